@@ -1,0 +1,65 @@
+"""Linear blend skinning, all frames in one matrix product."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tempose.clips import SkeletonClip, SkinnedMesh
+from tempose.kinematics.forward import forward_kinematics, rest_transforms
+from tempose.rotations import conjugate, multiply, rotate, to_matrix
+from tempose.typing import FloatArray
+
+
+def linear_blend_skinning(skin: SkinnedMesh, rotations: FloatArray, root_position: FloatArray) -> FloatArray:
+    """Pose a skinned mesh.
+
+    Parameters
+    ----------
+    skin : SkinnedMesh
+        n vertices bound to J joints in the skeleton's rest pose.
+    rotations : (T, J, 4) float
+        Local rotations wxyz.
+    root_position : (T, 3) float
+        World position of the root, metres.
+
+    Returns
+    -------
+    (T, n, 3) ndarray
+        Posed vertices, metres.
+    """
+    bind_rotation, bind_position = rest_transforms(skin.skeleton)
+    world, position = forward_kinematics(skin.skeleton, rotations, root_position)
+    turn = multiply(world, conjugate(bind_rotation))
+    shift = position - rotate(turn, bind_position)
+    V1 = np.column_stack([skin.mesh.vertices, np.ones(len(skin.mesh.vertices))])
+    # (n, J*4) @ (J*4, T*3): each vertex row holds w_j [x y z 1] for every joint
+    lifted = (skin.weights[:, :, None] * V1[:, None, :]).reshape(len(V1), -1)
+    matrices = np.concatenate([to_matrix(turn), shift[..., None]], axis=-1)
+    columns = matrices.transpose(1, 3, 0, 2).reshape(lifted.shape[1], -1)
+    return (lifted @ columns).reshape(len(V1), len(world), 3).transpose(1, 0, 2)
+
+
+def bake(skin: SkinnedMesh, clip: SkeletonClip) -> FloatArray:
+    """Vertices of every frame of a skeleton clip on its own skinned mesh.
+
+    Parameters
+    ----------
+    skin : SkinnedMesh
+        Bound to a skeleton of the same joints as that of `clip`.
+    clip : SkeletonClip
+        T frames.
+
+    Returns
+    -------
+    (T, n, 3) ndarray
+        Posed vertices, metres.
+
+    Raises
+    ------
+    ValueError
+        If the joints differ.
+    """
+    if clip.skeleton.names != skin.skeleton.names:
+        raise ValueError(f"clip must move the {skin.skeleton.n_joints} joints of the skin, "
+                         f"got {clip.skeleton.n_joints} joints, first {clip.skeleton.names[0]!r}")
+    return linear_blend_skinning(skin, clip.rotations, clip.root_position)
