@@ -94,7 +94,9 @@ def _as_shape(value: Any, name: str, shape: tuple[int | str, ...], dtype: Any) -
     try:
         array = np.asarray(value, dtype=dtype)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} must be an array of numbers of shape {_shape_text(shape)}: {error}") from None
+        raise ValueError(
+            f"{name} must be an array of numbers of shape {_shape_text(shape)}: {error}"
+        ) from None
     fits = array.ndim == len(shape) and all(
         isinstance(want, str) or want == got for want, got in zip(shape, array.shape)
     )

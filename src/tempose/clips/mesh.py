@@ -44,25 +44,33 @@ class Mesh:
         set_(self, "vertices", read_only(vertices))
         set_(self, "faces", read_only(faces))
         self._check_attributes(n, len(faces))
-        groups = {str(k): read_only(as_indices(v, f"groups[{k!r}]", ("k",), limit=len(faces)))
-                  for k, v in self.groups.items()}
+        groups = {
+            str(k): read_only(as_indices(v, f"groups[{k!r}]", ("k",), limit=len(faces)))
+            for k, v in self.groups.items()
+        }
         set_(self, "groups", MappingProxyType(groups))
 
     def _check_attributes(self, n: int, m: int) -> None:
         set_ = object.__setattr__
         if self.uv is not None:
-            set_(self, "uv", read_only(as_floats(self.uv, "uv", ("k" if self.uv_faces is not None else n, 2))))
+            set_(
+                self, "uv", read_only(as_floats(self.uv, "uv", ("k" if self.uv_faces is not None else n, 2)))
+            )
         if self.uv_faces is not None:
             if self.uv is None:
                 raise ValueError("uv_faces needs uv, got None")
-            set_(self, "uv_faces", read_only(as_indices(self.uv_faces, "uv_faces", (m, 3), limit=len(self.uv))))
+            set_(
+                self, "uv_faces", read_only(as_indices(self.uv_faces, "uv_faces", (m, 3), limit=len(self.uv)))
+            )
         if self.colors is not None:
             set_(self, "colors", read_only(as_floats(self.colors, "colors", (n, 3))))
         if self.polygons is not None:
             polygons = as_indices(self.polygons, "polygons", ("p",))
             if (polygons < 3).any() or int((polygons - 2).sum()) != m:
-                raise ValueError(f"polygons must be corner counts >= 3 that fan into {m} triangles, "
-                                 f"got {int((polygons - 2).sum())} triangles")
+                raise ValueError(
+                    f"polygons must be corner counts >= 3 that fan into {m} triangles, "
+                    f"got {int((polygons - 2).sum())} triangles"
+                )
             set_(self, "polygons", read_only(polygons))
 
     def with_vertices(self, vertices: FloatArray) -> Mesh:

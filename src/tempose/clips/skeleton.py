@@ -116,8 +116,10 @@ class SkeletonClip:
         norms = np.linalg.norm(rotations, axis=-1)
         if norms.size and np.abs(norms - 1).max() > 1e-3:
             t, j = np.unravel_index(int(np.abs(norms - 1).argmax()), norms.shape)
-            raise ValueError(f"rotations must be unit quaternions, got norm {norms[t, j]:.4g} "
-                             f"at frame {t}, joint {self.skeleton.names[int(j)]!r}")
+            raise ValueError(
+                f"rotations must be unit quaternions, got norm {norms[t, j]:.4g} "
+                f"at frame {t}, joint {self.skeleton.names[int(j)]!r}"
+            )
         root = as_floats(self.root_position, "root_position", (len(rotations), 3))
         if not 0 < self.fps < float("inf"):
             raise ValueError(f"fps must be positive, got {self.fps}")
@@ -149,5 +151,11 @@ class SkeletonClip:
             The shorter clip.
         """
         step = index.step or 1 if isinstance(index, slice) else 1
-        return SkeletonClip(self.skeleton, self.rotations[index], self.root_position[index],
-                            self.fps / abs(step), self.name, self.source)
+        return SkeletonClip(
+            self.skeleton,
+            self.rotations[index],
+            self.root_position[index],
+            self.fps / abs(step),
+            self.name,
+            self.source,
+        )

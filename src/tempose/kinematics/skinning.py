@@ -60,6 +60,8 @@ def bake(skin: SkinnedMesh, clip: SkeletonClip) -> FloatArray:
         If the joints differ.
     """
     if clip.skeleton.names != skin.skeleton.names:
-        raise ValueError(f"clip must move the {skin.skeleton.n_joints} joints of the skin, "
-                         f"got {clip.skeleton.n_joints} joints, first {clip.skeleton.names[0]!r}")
+        raise ValueError(
+            f"clip must move the {skin.skeleton.n_joints} joints of the skin, "
+            f"got {clip.skeleton.n_joints} joints, first {clip.skeleton.names[0]!r}"
+        )
     return linear_blend_skinning(skin, clip.rotations, clip.root_position)

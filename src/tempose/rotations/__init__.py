@@ -17,7 +17,21 @@ from tempose.rotations.quaternions import (
 from tempose.rotations.swing_twist import swing_twist
 
 __all__ = [
-    "IDENTITY", "angle_between", "conjugate", "from_euler_degrees", "from_matrix", "from_rotation_vector",
-    "mean_rotation", "multiply", "normalise", "polar_rotation", "procrustes_rotation", "rotate",
-    "shortest_rotation", "slerp", "swing_twist", "to_matrix", "to_rotation_vector",
+    "IDENTITY",
+    "angle_between",
+    "conjugate",
+    "from_euler_degrees",
+    "from_matrix",
+    "from_rotation_vector",
+    "mean_rotation",
+    "multiply",
+    "normalise",
+    "polar_rotation",
+    "procrustes_rotation",
+    "rotate",
+    "shortest_rotation",
+    "slerp",
+    "swing_twist",
+    "to_matrix",
+    "to_rotation_vector",
 ]

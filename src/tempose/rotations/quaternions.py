@@ -31,12 +31,15 @@ def multiply(p: FloatArray, q: FloatArray) -> FloatArray:
     """
     pw, px, py, pz = np.moveaxis(np.asarray(p, dtype=np.float64), -1, 0)
     qw, qx, qy, qz = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
-    return np.stack([
-        pw * qw - px * qx - py * qy - pz * qz,
-        pw * qx + px * qw + py * qz - pz * qy,
-        pw * qy - px * qz + py * qw + pz * qx,
-        pw * qz + px * qy - py * qx + pz * qw,
-    ], axis=-1)
+    return np.stack(
+        [
+            pw * qw - px * qx - py * qy - pz * qz,
+            pw * qx + px * qw + py * qz - pz * qy,
+            pw * qy - px * qz + py * qw + pz * qx,
+            pw * qz + px * qy - py * qx + pz * qw,
+        ],
+        axis=-1,
+    )
 
 
 def conjugate(q: FloatArray) -> FloatArray:
@@ -115,9 +118,15 @@ def to_matrix(q: FloatArray) -> FloatArray:
     """
     w, x, y, z = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
     rows = [
-        1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-        2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-        2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y),
+        1 - 2 * (y * y + z * z),
+        2 * (x * y - w * z),
+        2 * (x * z + w * y),
+        2 * (x * y + w * z),
+        1 - 2 * (x * x + z * z),
+        2 * (y * z - w * x),
+        2 * (x * z - w * y),
+        2 * (y * z + w * x),
+        1 - 2 * (x * x + y * y),
     ]
     return np.stack(rows, axis=-1).reshape(*np.shape(w), 3, 3)
 
@@ -147,10 +156,14 @@ def from_matrix(R: FloatArray) -> FloatArray:
     a, b, c = r[:, 7] - r[:, 5], r[:, 2] - r[:, 6], r[:, 3] - r[:, 1]
     p, s, t = r[:, 3] + r[:, 1], r[:, 2] + r[:, 6], r[:, 7] + r[:, 5]
     one = 1 + pivots[np.arange(len(r)), best]
-    rows = np.stack([
-        np.column_stack([one, a, b, c]), np.column_stack([a, one, p, s]),
-        np.column_stack([b, p, one, t]), np.column_stack([c, s, t, one]),
-    ])
+    rows = np.stack(
+        [
+            np.column_stack([one, a, b, c]),
+            np.column_stack([a, one, p, s]),
+            np.column_stack([b, p, one, t]),
+            np.column_stack([c, s, t, one]),
+        ]
+    )
     q = normalise(rows[best, np.arange(len(r))])
     q = np.where(q[:, :1] < 0, -q, q)
     return q.reshape(*R.shape[:-2], 4)
@@ -192,8 +205,12 @@ def slerp(p: FloatArray, q: FloatArray, s: FloatArray | float) -> FloatArray:
     s = np.asarray(s, dtype=np.float64)[..., None]
     dot = np.sum(p * q, axis=-1, keepdims=True)
     q = np.where(dot < 0, -q, q)
-    theta = np.arctan2(np.linalg.norm(q - p, axis=-1, keepdims=True),
-                       np.linalg.norm(q + p, axis=-1, keepdims=True)) * 2.0
+    theta = (
+        np.arctan2(
+            np.linalg.norm(q - p, axis=-1, keepdims=True), np.linalg.norm(q + p, axis=-1, keepdims=True)
+        )
+        * 2.0
+    )
     # np.sinc is sin(pi x) / (pi x): the ratio of sines without a special case at theta = 0
     scale = np.sinc(theta / np.pi)
     a = (1 - s) * np.sinc((1 - s) * theta / np.pi) / scale
