@@ -1,0 +1,1 @@
+"""Clips from nothing: procedural characters and motions with known truth."""
