@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tempose.datasets import cache_folder
+
 settings.register_profile("default", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("ci", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("ci" if os.environ.get("CI") else "default")
@@ -26,10 +28,11 @@ def data_folder() -> Callable[[str], Path]:
 
     def find(name: str) -> Path:
         beside = Path(__file__).resolve().parents[2] / "shared" / "data"
-        root = Path(os.environ.get("TEMPOSE_DATA") or beside)
-        if (root / name).is_dir():
-            return root / name
-        message = f"no folder {name!r} in {root}: set TEMPOSE_DATA or run `tempose data fetch {name}`"
+        given = os.environ.get("TEMPOSE_DATA")
+        for root in (Path(given) if given else beside, cache_folder()):
+            if (root / name).is_dir():
+                return root / name
+        message = f"no data set {name!r}: set TEMPOSE_DATA or run `tempose data fetch {name}`"
         if os.environ.get("CI"):
             pytest.fail(message)
         pytest.skip(message)
