@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from tempose.formats._input import read_bytes
+from tempose.formats._numbers import NumberError, parse_floats
 from tempose.formats.conventions import FormatError
 from tempose.typing import FloatArray
 
@@ -40,7 +41,8 @@ class BvhText:
 
 def parse_bvh(path: Path) -> BvhText:
     """Read and take apart a BVH file."""
-    text = path.read_bytes().decode("utf-8-sig", errors="replace")
+    data = read_bytes(path, "BVH motion capture", b"HIERARCHY")
+    text = data.decode("utf-8-sig", errors="replace")
     lines = text.splitlines()
     start = next((i for i, line in enumerate(lines) if line.split()[:1] == ["MOTION"]), len(lines))
     result = BvhText(joints=_hierarchy(path, lines[:start]))
@@ -179,7 +181,10 @@ def _rows(path: Path, lines: list[str], start: int, result: BvhText, count: int)
             f"The header says {count} frames, the file has {len(numbers)}: the rest is left out."
         )
         numbers = numbers[:count]
-    values = _values(" ".join(lines[i - 1] for i in numbers))
+    try:
+        values = parse_floats(" ".join([lines[i - 1] for i in numbers]).encode())
+    except NumberError:
+        values = np.zeros(0)
     if len(numbers) == count and values.size == count * width and (np.abs(values) < _SANE).all():
         return values.reshape(count, width)
     _complain(path, [(i, lines[i - 1].split()) for i in numbers], width)
@@ -187,16 +192,6 @@ def _rows(path: Path, lines: list[str], start: int, result: BvhText, count: int)
         f"{path}, line {len(lines)}: expected {count} frames as 'Frames:' says, found {len(numbers)}; "
         "the file is cut short"
     )
-
-
-def _values(text: str) -> FloatArray:
-    with warnings.catch_warnings():
-        # numpy only warns when it stops at something that is no number
-        warnings.simplefilter("error")
-        try:
-            return np.fromstring(text, sep=" ")
-        except (DeprecationWarning, ValueError):
-            return np.zeros(0)
 
 
 def _complain(path: Path, rows: list[tuple[int, list[str]]], width: int) -> None:
