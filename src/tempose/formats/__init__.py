@@ -1,0 +1,26 @@
+"""Clips from and to files, one file a format; everything is converted here and nowhere else."""
+
+from tempose.formats.conventions import UNITS, FormatError
+from tempose.formats.describe import describe
+from tempose.formats.registry import (
+    FORMATS,
+    load,
+    load_clip,
+    load_mesh,
+    load_skeleton_clip,
+    load_skin,
+)
+from tempose.formats.saving import save
+
+__all__ = [
+    "FORMATS",
+    "UNITS",
+    "FormatError",
+    "describe",
+    "load",
+    "load_clip",
+    "load_mesh",
+    "load_skeleton_clip",
+    "load_skin",
+    "save",
+]

@@ -1,0 +1,76 @@
+"""Writing meshes and clips: the ending of the name chooses the format."""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from pathlib import Path
+
+from tempose.clips import Mesh, MeshClip
+from tempose.formats._frames import SEQUENCE_SUFFIXES, split_counter
+from tempose.formats._place import metres_per_unit
+from tempose.formats._sequence import write_sequence, write_still
+from tempose.formats._table import FORMATS, PathLike, Unit, check_arguments
+from tempose.formats.conventions import FormatError
+from tempose.typing import Progress, silent
+
+
+def save(
+    path: PathLike,
+    thing: Mesh | MeshClip,
+    *,
+    up: str | None = None,
+    unit: Unit = None,
+    progress: Progress = silent,
+) -> None:
+    """Write a mesh or a clip; nothing stands under the final name before it is complete.
+
+    Parameters
+    ----------
+    path : path-like
+        The ending chooses the format. A clip also goes to a folder (no ending: ``frame_0000.obj`` and on)
+        or to ``name.####.obj``.
+    thing : Mesh or MeshClip
+        What to write.
+    up : str, optional
+        Up axis of the file; by default that of ``thing.source``. GLB is always Y up.
+    unit : str or float, optional
+        Unit of the file; by default that of ``thing.source``. GLB is always metres.
+    progress : Progress
+        Told about every frame.
+
+    Raises
+    ------
+    FormatError
+        If the ending is unknown or cannot hold it.
+    OSError
+        If the place cannot be written.
+    """
+    check_arguments(up, unit, None)
+    place = os.fspath(path)
+    suffix = Path(place).suffix.lower()
+    if suffix == ".glb":
+        return import_module("tempose.formats.glb").write(place, thing)
+    source = thing.source
+    up, metres = up or source.up, metres_per_unit(unit) or source.unit
+    is_pattern = split_counter(Path(place).name) is not None and suffix in SEQUENCE_SUFFIXES
+    if isinstance(thing, MeshClip) and (suffix == "" or is_pattern):
+        return write_sequence(place, thing, up, metres, progress)
+    if suffix in (".npz", ".npy"):
+        return import_module("tempose.formats.npz").write(place, thing, up, metres)
+    if suffix in SEQUENCE_SUFFIXES:
+        return write_still(Path(place), _one_frame(place, thing), up, metres)
+    known = ", ".join(k for k, f in FORMATS.items() if f.writes)
+    raise FormatError(f"{place}: cannot write {suffix or 'a file without ending'!r}; known are {known}")
+
+
+def _one_frame(place: str, thing: Mesh | MeshClip) -> Mesh:
+    if isinstance(thing, Mesh):
+        return thing
+    if thing.n_frames == 1:
+        return thing.mesh.with_vertices(thing.vertices[0])
+    name = Path(place)
+    raise FormatError(
+        f"{place}: one {name.suffix} file holds one frame, the clip has {thing.n_frames}; "
+        f"write to {name.stem}.####{name.suffix}, to a folder, or to {name.stem}.glb or .npz"
+    )
