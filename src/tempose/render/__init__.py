@@ -1,0 +1,30 @@
+"""Pictures, films and reports, on any machine: no display, no graphics card, no OpenGL."""
+
+from tempose.render.camera import NAMED_VIEWS, Camera
+from tempose.render.colors import RAMPS, ramp_colors
+from tempose.render.film import film, render, turntable
+from tempose.render.follow import clip_cameras, ground_level
+from tempose.render.frame import render_frame
+from tempose.render.sheet import contact_sheet
+from tempose.render.themes import DARK, LIGHT, Theme
+from tempose.render.writers import save_gif, save_mp4, save_png
+
+__all__ = [
+    "DARK",
+    "LIGHT",
+    "NAMED_VIEWS",
+    "RAMPS",
+    "Camera",
+    "Theme",
+    "clip_cameras",
+    "contact_sheet",
+    "film",
+    "ground_level",
+    "ramp_colors",
+    "render",
+    "render_frame",
+    "save_gif",
+    "save_mp4",
+    "save_png",
+    "turntable",
+]
