@@ -11,7 +11,19 @@ from typing import TYPE_CHECKING, Any
 from tempose._version import __version__
 
 if TYPE_CHECKING:
-    from tempose import clips, datasets, formats, kinematics, metrics, render, rotations, samples, transfer
+    from tempose import (
+        clips,
+        datasets,
+        formats,
+        geometry,
+        kinematics,
+        linalg,
+        metrics,
+        render,
+        rotations,
+        samples,
+        transfer,
+    )
     from tempose.clips import MarkerClip, Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
     from tempose.formats import load, save
     from tempose.transfer import MotionTransfer
@@ -31,7 +43,9 @@ _PACKAGES = (
     "clips",
     "datasets",
     "formats",
+    "geometry",
     "kinematics",
+    "linalg",
     "metrics",
     "render",
     "rotations",
@@ -51,7 +65,9 @@ __all__ = [
     "clips",
     "datasets",
     "formats",
+    "geometry",
     "kinematics",
+    "linalg",
     "load",
     "metrics",
     "render",

@@ -1,0 +1,71 @@
+"""Options that several commands share, and loading with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import tempose
+from tempose.cli.console import note, progress_bar
+
+if TYPE_CHECKING:
+    from tempose.clips import Mesh, MeshClip, SkeletonClip
+
+FromUp = Annotated[
+    str | None, typer.Option(metavar="x|y|z", help="Up axis of the input, where it is other than guessed.")
+]
+FromUnit = Annotated[
+    str | None,
+    typer.Option(metavar="UNIT", help="Unit of the input: mm, cm, dm, m, in, ft, or metres per unit."),
+]
+FromFps = Annotated[
+    float | None, typer.Option(metavar="F", help="Rate of the input, where it states none or a wrong one.")
+]
+Group = Annotated[str | None, typer.Option(metavar="NAME", help="Keep only this group of faces.")]
+Clip = Annotated[
+    str | None, typer.Option(metavar="NAME|NUMBER", help="Which animation, where the input holds several.")
+]
+Topology = Annotated[
+    Path | None,
+    typer.Option(metavar="MESH", help="Mesh whose faces belong to the input, where it holds positions only."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
+
+
+def as_clip_choice(clip: str | None) -> str | int | None:
+    """Read a choice of animation: digits are a number, anything else a name.
+
+    Parameters
+    ----------
+    clip : str or None
+        What was typed.
+
+    Returns
+    -------
+    str, int or None
+        What `tempose.load` takes.
+    """
+    return int(clip) if clip is not None and clip.isdecimal() else clip
+
+
+def load(path: str, **options: Any) -> Mesh | MeshClip | SkeletonClip:
+    """Load a file with a progress bar and say in one line on standard error what it is.
+
+    Parameters
+    ----------
+    path : str
+        As for `tempose.load`.
+    **options
+        As for `tempose.load`.
+
+    Returns
+    -------
+    Mesh, MeshClip or SkeletonClip
+        What the file holds.
+    """
+    with progress_bar() as progress:
+        loaded = tempose.load(path, progress=progress, **options)
+    note(tempose.formats.describe(loaded))
+    return loaded
