@@ -1,0 +1,142 @@
+"""One interface for sparse symmetric positive definite systems, three ways behind it."""
+
+from __future__ import annotations
+
+import importlib.util
+import warnings
+from typing import Any, Literal
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from tempose.linalg.triangular import scatter_rows, solve_ldl, strictly_lower
+from tempose.typing import FloatArray
+
+Backend = Literal["numba", "splu", "cholespy"]
+_BLOCK = 96
+
+
+class SparseCholesky:
+    """Factorise a sparse matrix once, then solve for any number of right-hand sides.
+
+    Parameters
+    ----------
+    A : (n, n) sparse array
+        Symmetric positive definite; both triangles stored.
+    backend : {"numba", "splu", "cholespy"}, default "numba"
+        ``"numba"``: factor by SuperLU without pivoting, solve by our own kernel, fast for many sides;
+        ``"splu"``: SuperLU for both; ``"cholespy"``: CHOLMOD, where that package is installed.
+        The results agree to rounding.
+
+    Raises
+    ------
+    ValueError
+        If A is not square, not symmetric or not positive definite; the message says what to do.
+    ImportError
+        If cholespy was asked for and is not installed.
+
+    Examples
+    --------
+    >>> A = sp.csc_array(np.array([[4.0, 1.0], [1.0, 3.0]]))
+    >>> SparseCholesky(A).solve(np.array([1.0, 2.0])).round(6).tolist()
+    [0.090909, 0.636364]
+    """
+
+    def __init__(self, A: Any, backend: Backend = "numba") -> None:
+        A = sp.csc_array(A, dtype=np.float64)
+        _check_symmetric(A)
+        self.n = int(A.shape[0])
+        self.backend: Backend = backend
+        if backend == "cholespy":
+            self._factor_cholespy(A)
+        elif backend in ("numba", "splu"):
+            self._factor_splu(A)
+        else:
+            raise ValueError(f"backend must be 'numba', 'splu' or 'cholespy', got {backend!r}")
+
+    def _factor_splu(self, A: Any) -> None:
+        options = {"SymmetricMode": True}
+        try:
+            # relaxed supernodes (the default) made one ordering of a geodesic sphere 30 times slower
+            lu = splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, relax=1, options=options)
+        except RuntimeError as error:
+            raise ValueError(_not_definite(f"SuperLU: {error}")) from None
+        diagonal = lu.U.diagonal()
+        if not np.array_equal(lu.perm_r, lu.perm_c) or not (diagonal > 0).all():
+            raise ValueError(_not_definite(f"smallest pivot {diagonal.min():.3g}"))
+        self._lu = lu
+        if self.backend == "numba":
+            self.indptr, self.indices, self.data = strictly_lower(lu.L)
+            self.inverse_diagonal = 1.0 / diagonal
+            self.permutation = np.asarray(lu.perm_c, dtype=np.int64)
+
+    def _factor_cholespy(self, A: Any) -> None:
+        if importlib.util.find_spec("cholespy") is None:
+            raise ImportError("backend 'cholespy' needs the package cholespy: pip install cholespy")
+        from cholespy import CholeskySolverD, MatrixType  # pyright: ignore
+
+        coo = A.tocoo()
+        self._solver = CholeskySolverD(self.n, coo.row, coo.col, coo.data, MatrixType.COO)
+
+    def solve(self, b: FloatArray) -> FloatArray:
+        """Solve ``A x = b``.
+
+        Parameters
+        ----------
+        b : (n,) or (n, k) float
+            Right-hand sides in columns.
+
+        Returns
+        -------
+        (n,) or (n, k) ndarray
+            Solutions.
+
+        Raises
+        ------
+        ValueError
+            If `b` has another number of rows.
+        """
+        b = np.asarray(b, dtype=np.float64)
+        if b.ndim not in (1, 2) or b.shape[0] != self.n:
+            raise ValueError(f"b must have shape ({self.n},) or ({self.n}, k), got {b.shape}")
+        columns = b.reshape(self.n, -1)
+        x = np.concatenate(
+            [self._solve_block(columns[:, c : c + _BLOCK]) for c in range(0, columns.shape[1], _BLOCK)]
+            or [columns],
+            axis=1,
+        )
+        return x.reshape(b.shape)
+
+    def _solve_block(self, b: FloatArray) -> FloatArray:
+        if self.backend == "splu":
+            return self._lu.solve(np.asfortranarray(b))
+        if self.backend == "cholespy":
+            x = np.zeros(b.shape)
+            self._solver.solve(np.ascontiguousarray(b), x)
+            return x
+        x = np.zeros(b.shape)
+        scatter_rows(b, self.permutation, x)
+        solve_ldl(self.indptr, self.indices, self.data, self.inverse_diagonal, x)
+        return x[self.permutation]
+
+
+def _check_symmetric(A: Any) -> None:
+    if A.shape[0] != A.shape[1]:
+        raise ValueError(f"A must be square, got shape {A.shape}")
+    if A.shape[0] == 0:
+        raise ValueError("A must have at least one row, got none")
+    if not np.isfinite(A.data).all():
+        raise ValueError("A must be finite, found NaN or infinity; look for degenerate faces")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", sp.SparseEfficiencyWarning)
+        difference = abs(A - A.T).max()
+    if difference > 1e-9 * max(abs(A).max(), 1e-300):
+        raise ValueError(f"A must be symmetric, got |A - A^T| up to {difference:.3g}")
+
+
+def _not_definite(found: str) -> str:
+    return (
+        f"A is not positive definite ({found}); hold at least one vertex of every connected component "
+        "and remove degenerate faces"
+    )
