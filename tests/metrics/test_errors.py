@@ -54,6 +54,11 @@ def test_a_clip_against_itself_is_exactly_zero(clips) -> None:
     assert set(compare(clips[0], clips[0], D=1.0).as_dict().values()) == {0.0}
 
 
+def test_numbers_are_plain_so_that_they_go_into_json(clips) -> None:
+    errors = compare(*clips, D=np.float32(2.5)).as_dict()  # type: ignore[arg-type]
+    assert all(type(value) is float for value in errors.values())
+
+
 def test_one_vertex_moved_has_the_closed_form() -> None:
     # 2 frames of the corners of a unit square, spread 4 * 1/2 a frame; one corner of one frame off by 0.1
     V = np.tile([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], (2, 1, 1))

@@ -82,7 +82,7 @@ def compare(V: FloatArray, V2: FloatArray, D: float) -> ClipErrors:
     V, V2 = check_clip(V, "V"), check_clip(V2, "V2")
     if V.shape != V2.shape:
         raise ValueError(f"V2 must have the shape {V.shape} of V, got {V2.shape}: frames or vertices differ")
-    _check_diagonal(D)
+    D = _check_diagonal(D)
     T, n, _ = V.shape
     squared, spread = 0.0, 0.0
     distances = UpperTail(T * n, 99)
@@ -108,6 +108,7 @@ def _assemble(squared: float, spread: float, distances: UpperTail, count: int, D
     )
 
 
-def _check_diagonal(D: Any) -> None:
+def _check_diagonal(D: Any) -> float:
     if not 0 < D < math.inf:
         raise ValueError(f"D must be the positive diagonal of the rest mesh's bounding box, got {D}")
+    return float(D)

@@ -76,6 +76,6 @@ def penetration(V: FloatArray, height: float, ground: float = 0.0) -> Penetratio
     """
     if not 0 < height < math.inf:
         raise ValueError(f"height must be positive, got {height}")
-    depths = ground_depths(V, ground)
+    depths, height = ground_depths(V, ground), float(height)
     deepest, mean = float(depths.max()), float(depths.mean())
     return Penetration(100 * deepest, 100 * mean, 100 * deepest / height, 100 * mean / height)
