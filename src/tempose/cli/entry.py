@@ -10,6 +10,7 @@ from typing import Any
 BAD_INPUT = 2
 INTERRUPTED = 130
 DEFECT = 1
+UNREAD = 1
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -50,19 +51,23 @@ def _failed(error: Exception) -> int:
     if isinstance(error, BrokenPipeError) and error.filename is None:
         # the reader of our output has gone (`tempose info x | head -1`): nobody is left to tell
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        return UNREAD
     if hasattr(error, "format_message"):
         _complain(_usage(error))
     elif isinstance(error, OSError):
         _complain(_trouble(error))
     elif isinstance(error, MemoryError):
         _complain(f"out of memory{': ' if str(error) else ''}{error}; try a smaller mesh or fewer frames")
-    elif isinstance(error, ValueError | ImportError):
+    elif isinstance(error, ValueError) or _is_missing_extra(error):
         _complain(str(error))
     else:
         _complain(f"a defect of Tempose, please report it: {name}: {error} (TEMPOSE_TRACEBACK=1 shows where)")
         return DEFECT
     return BAD_INPUT
+
+
+def _is_missing_extra(error: Exception) -> bool:
+    return isinstance(error, ImportError) and not (error.name or "").startswith("tempose")
 
 
 def _usage(error: Any) -> str:
