@@ -125,7 +125,7 @@ def tokens_per_line(block: bytes) -> IntArray:
     ink = text > _SPACE
     begins = ink.copy()
     begins[1:] &= ~ink[:-1]
-    totals = np.cumsum(begins)[text == _NEWLINE]
+    totals = np.searchsorted(np.flatnonzero(begins), np.flatnonzero(text == _NEWLINE))
     return np.diff(totals, prepend=0)
 
 

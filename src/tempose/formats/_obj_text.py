@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from tempose.clips import Mesh
+from tempose.formats._group_sets import group_sets
 from tempose.formats._polygons import unfan
 from tempose.typing import FloatArray, IntArray
 
@@ -88,21 +89,14 @@ def _face_text(mesh: Mesh) -> str:
 def _group_runs(mesh: Mesh, counts: IntArray) -> list[tuple[int, int, str]]:
     """List runs of polygons that are in the same groups, each with the line that opens it."""
     p = len(counts)
-    names = list(mesh.groups)
-    if not names or p == 0:
+    if not mesh.groups or p == 0:
         return [(0, p, "")]
-    first_triangle = np.cumsum(counts - 2) - (counts - 2)
-    member = np.zeros((p, len(names)), np.bool_)
-    for k, name in enumerate(names):
-        inside = np.zeros(len(mesh.faces), np.bool_)
-        inside[mesh.groups[name]] = True
-        member[:, k] = inside[first_triangle]
-    changes = np.flatnonzero((member[1:] != member[:-1]).any(axis=1)) + 1
-    begins, ends = [0, *changes.tolist()], [*changes.tolist(), p]
-    lines = [" ".join(["g", *(_word(names[k]) for k in np.flatnonzero(member[b]))]) + "\n" for b in begins]
-    if lines[0] == "g\n":
-        lines[0] = ""
-    return list(zip(begins, ends, lines))
+    numbers, sets = group_sets(mesh, counts)
+    begins = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist()]
+    opening = [" ".join(["g", *map(_word, sets[numbers[b]])]) + "\n" for b in begins]
+    if not sets[numbers[0]]:
+        opening[0] = ""
+    return list(zip(begins, [*begins[1:], p], opening))
 
 
 def _word(name: str, spaces: bool = False) -> str:

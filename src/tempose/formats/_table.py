@@ -30,11 +30,16 @@ FORMATS: dict[str, Format] = {
     ".npz": Format(("mesh", "clip"), True),
     ".npy": Format(("clip",), True),
     ".glb": Format(("mesh", "clip", "skeleton", "skin"), True),
+    ".gltf": Format(("mesh", "clip", "skeleton", "skin"), False),
     ".bvh": Format(("skeleton",), False),
     ".amc": Format(("skeleton",), False),
     ".mhw": Format(("skin",), False),
 }
 """File name ending to what is known about it; modules are imported only when needed."""
+
+
+GLTF_SUFFIXES = (".glb", ".gltf")
+"""The two containers of glTF 2.0."""
 
 
 def known_suffix(place: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,31 +12,18 @@ from tempose.formats._numbers import Lines, NumberError, parse_floats, split_lin
 from tempose.formats._obj_faces import keyword_rows, read_corners, read_groups
 from tempose.formats._obj_text import encoder
 from tempose.formats._polygons import fan, polygon_of_triangle
+from tempose.formats._topology import Frame, other_counts, same_topology
 from tempose.formats.conventions import FormatError
 from tempose.typing import FloatArray, IntArray
 
-__all__ = ["ObjFrame", "encoder", "read_first", "read_next"]
+__all__ = ["encoder", "read_first", "read_next"]
 
 _VERTEX = (ord("v") * 256 + 32, ord("v") * 256 + 9)
 _TEXTURE = (ord("v") * 256 + ord("t"),)
 _FACE = (ord("f") * 256 + 32, ord("f") * 256 + 9)
 
 
-@dataclass(frozen=True)
-class ObjFrame:
-    """The first frame of a sequence and what is needed to recognise the others."""
-
-    mesh: Mesh
-    """The mesh, in the axes and unit of the file."""
-    path: str
-    """Where it came from."""
-    face_text: bytes
-    """Its face lines; frames whose text is equal need no parsing of faces."""
-    notes: tuple[str, ...]
-    """What was unusual."""
-
-
-def read_first(path: str) -> ObjFrame:
+def read_first(path: str) -> Frame:
     """Read one OBJ file.
 
     Parameters
@@ -47,7 +33,7 @@ def read_first(path: str) -> ObjFrame:
 
     Returns
     -------
-    ObjFrame
+    Frame
         Its mesh in the axes and unit of the file.
 
     Raises
@@ -83,17 +69,17 @@ def read_first(path: str) -> ObjFrame:
         None if (corners.counts == 3).all() else corners.counts,
         name or Path(path).stem,
     )
-    return ObjFrame(mesh, path, face_text, notes)
+    return Frame(mesh, path, notes, face_text)
 
 
-def read_next(path: str, first: ObjFrame) -> FloatArray:
+def read_next(path: str, first: Frame) -> FloatArray:
     """Read the positions of a later frame and check that it is the same mesh.
 
     Parameters
     ----------
     path : str
         File to read.
-    first : ObjFrame
+    first : Frame
         First frame of the sequence.
 
     Returns
@@ -109,66 +95,10 @@ def read_next(path: str, first: ObjFrame) -> FloatArray:
     lines = split_lines(read_bytes(path, "an OBJ mesh"))
     is_vertex, is_face = (np.isin(lines.keys, keys) for keys in (_VERTEX, _FACE))
     if b"-" in first.face_text or lines.block(is_face, 1) != first.face_text:
-        return same_topology(read_first(path).mesh, path, first.mesh, first.path)
+        return same_topology(read_first(path).mesh, path, first)
     if int(is_vertex.sum()) != len(first.mesh.vertices):
         raise other_counts(path, int(is_vertex.sum()), "vertices", first.path, len(first.mesh.vertices))
     return _table(path, lines, is_vertex, 1, "vertex", 3)[0][:, :3]
-
-
-def same_topology(mesh: Mesh, path: str, first: Mesh, first_path: str) -> FloatArray:
-    """Return the positions of a mesh that must have the faces of another.
-
-    Parameters
-    ----------
-    mesh, first : Mesh
-        A later and the first frame.
-    path, first_path : str
-        Their files.
-
-    Returns
-    -------
-    (n, 3) ndarray
-        Vertices of `mesh`.
-
-    Raises
-    ------
-    FormatError
-        If counts or faces differ; names both files.
-    """
-    for what in ("vertices", "faces"):
-        ours, theirs = len(getattr(mesh, what)), len(getattr(first, what))
-        if ours != theirs:
-            raise other_counts(path, ours, what, first_path, theirs)
-    differ = (mesh.faces != first.faces).any(axis=1)
-    if differ.any():
-        raise FormatError(
-            f"{path}: expected the faces of {first_path}, found another triangle {int(np.argmax(differ))}; "
-            "frames of one clip must share their connectivity"
-        )
-    return mesh.vertices
-
-
-def other_counts(path: str, ours: int, what: str, first_path: str, theirs: int) -> FormatError:
-    """Say that two frames differ in size.
-
-    Parameters
-    ----------
-    path, first_path : str
-        The two files.
-    ours, theirs : int
-        What each has.
-    what : str
-        Of what.
-
-    Returns
-    -------
-    FormatError
-        To be raised.
-    """
-    return FormatError(
-        f"{path}: has {ours} {what}, but {first_path} has {theirs}; "
-        "frames of one clip must share their connectivity"
-    )
 
 
 def _table(

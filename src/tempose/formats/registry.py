@@ -6,14 +6,14 @@ import os
 from importlib import import_module
 from typing import Any
 
-from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
+from tempose.clips import Mesh, MeshClip, SkeletonClip
 from tempose.clips.mesh_parts import keep_clip_group, keep_group
 from tempose.formats._frames import SEQUENCE_SUFFIXES, find_frames
 from tempose.formats._place import metres_per_unit
-from tempose.formats._restate import restate
 from tempose.formats._sequence import read_sequence, read_still
-from tempose.formats._table import FORMATS, PathLike, Unit, check_arguments, known_suffix
+from tempose.formats._table import FORMATS, GLTF_SUFFIXES, PathLike, Unit, check_arguments, known_suffix
 from tempose.formats.conventions import FormatError
+from tempose.formats.motion_files import load_skeleton_clip, load_skin
 from tempose.formats.saving import save
 from tempose.typing import Progress, silent
 
@@ -27,7 +27,7 @@ def load(
     unit: Unit = None,
     fps: float | None = None,
     group: str | None = None,
-    clip: str | int | None = None,
+    clip: str | None = None,
     topology: PathLike | Mesh | None = None,
     progress: Progress = silent,
 ) -> Mesh | MeshClip | SkeletonClip:
@@ -45,8 +45,8 @@ def load(
         Frames per second, where the file states none or a wrong rate.
     group : str, optional
         Keep only the faces of this group.
-    clip : str or int, optional
-        Which animation, where a file holds several.
+    clip : str, optional
+        Name of the animation, where a file holds several.
     topology : path-like or Mesh, optional
         Faces for formats that hold positions only.
     progress : Progress
@@ -74,7 +74,7 @@ def load(
         return _grouped(read_still(place, suffix, up, unit), group, place)
     if suffix in (".npz", ".npy"):
         return _grouped(_read_array(place, suffix, up, unit, fps, topology), group, place)
-    if suffix == ".glb":
+    if suffix in GLTF_SUFFIXES:
         return _grouped(_load_glb(place, up, unit, fps, clip), group, place)
     if suffix in (".bvh", ".amc"):
         return load_skeleton_clip(place, up=up, unit=unit, fps=fps)
@@ -114,8 +114,8 @@ def load_mesh(
     if frames is not None:
         place = str(frames.paths[0])
     suffix = known_suffix(place)
-    if suffix == ".glb":
-        mesh = restate(import_module("tempose.formats.glb").read_mesh(place), up, metres_per_unit(unit), None)
+    if suffix in GLTF_SUFFIXES:
+        mesh = import_module("tempose.formats.glb").read_mesh(place, up=up, unit=metres_per_unit(unit))
         return _grouped(mesh, group, place)
     loaded = load(place, up=up, unit=unit, group=group, topology=topology)
     if isinstance(loaded, MeshClip):
@@ -132,7 +132,7 @@ def load_clip(
     unit: Unit = None,
     fps: float | None = None,
     group: str | None = None,
-    clip: str | int | None = None,
+    clip: str | None = None,
     topology: PathLike | Mesh | None = None,
     progress: Progress = silent,
 ) -> MeshClip:
@@ -168,93 +168,6 @@ def load_clip(
     return loaded
 
 
-def load_skeleton_clip(
-    path: PathLike,
-    *,
-    up: str | None = None,
-    unit: Unit = None,
-    fps: float | None = None,
-    clip: str | int | None = None,
-) -> SkeletonClip:
-    """Load the motion of a skeleton.
-
-    Parameters
-    ----------
-    path : path-like
-        A BVH, AMC or GLB file.
-    up, unit, fps, clip
-        As for `load`.
-
-    Returns
-    -------
-    SkeletonClip
-        Metres, Y up.
-
-    Raises
-    ------
-    FormatError
-        If there is no skeleton in it.
-    """
-    check_arguments(up, unit, fps)
-    place, metres = os.fspath(path), metres_per_unit(unit)
-    suffix = known_suffix(place)
-    if suffix == ".bvh":
-        return import_module("tempose.formats.bvh").read_bvh(place, up=up, unit=metres, fps=fps)
-    if suffix == ".amc":
-        return import_module("tempose.formats.asf_amc").read_amc(place, up=up, unit=metres, fps=fps)
-    if suffix == ".glb":
-        motion = import_module("tempose.formats.glb").read_skeleton_clip(place, clip=clip)
-        return restate(motion, up, metres, fps)
-    known = ", ".join(k for k, f in FORMATS.items() if "skeleton" in f.reads)
-    raise FormatError(f"{place}: expected a skeleton's motion ({known}), found a {suffix} file")
-
-
-def load_skin(
-    path: PathLike,
-    *,
-    mesh: Mesh | None = None,
-    skeleton: PathLike | None = None,
-    up: str | None = None,
-    unit: Unit = None,
-) -> SkinnedMesh:
-    """Load a mesh bound to a skeleton.
-
-    Parameters
-    ----------
-    path : path-like
-        A GLB file with a skin, or MakeHuman weights (``.mhw``).
-    mesh : Mesh, optional
-        The mesh that MakeHuman weights are for; not used for GLB.
-    skeleton : path-like, optional
-        The ``.mhskel`` beside MakeHuman weights, where it is not found by itself.
-    up, unit
-        As for `load`; GLB only.
-
-    Returns
-    -------
-    SkinnedMesh
-        Metres, Y up.
-
-    Raises
-    ------
-    FormatError
-        If there is no skin in it.
-    ValueError
-        If weights come without their mesh.
-    """
-    check_arguments(up, unit, None)
-    place = os.fspath(path)
-    suffix = known_suffix(place)
-    if suffix == ".glb":
-        skinned = import_module("tempose.formats.glb").read_skin(place)
-        return restate(skinned, up, metres_per_unit(unit), None)
-    if suffix == ".mhw":
-        if mesh is None:
-            raise ValueError(f"{place} holds skin weights only: give the mesh they are for as mesh=...")
-        return import_module("tempose.formats.makehuman").read_skin(place, mesh, skeleton)
-    raise FormatError(f"{place}: expected a skin (.glb, .mhw), found a {suffix} file")
-
-
 def _grouped(thing: Any, group: str | None, place: str) -> Any:
     if group is None:
         return thing
@@ -284,19 +197,15 @@ def _read_array(
 
 
 def _load_glb(
-    place: str, up: str | None, unit: Unit, fps: float | None, clip: str | int | None
+    place: str, up: str | None, unit: Unit, fps: float | None, clip: str | None
 ) -> Mesh | MeshClip | SkeletonClip:
+    """Read the mesh if there is one, moving if it moves; else the motion of the joints."""
     glb, metres = import_module("tempose.formats.glb"), metres_per_unit(unit)
     try:
-        moving = glb.read_clip(place, clip=clip)
-        return restate(moving if moving.n_frames > 1 else glb.read_mesh(place), up, metres, fps)
+        moving = glb.read_clip(place, clip, fps, up=up, unit=metres)
     except FormatError as error:
-        if clip is not None:
-            raise
-        first_error = error
-    for read in (glb.read_mesh, glb.read_skeleton_clip):
         try:
-            return restate(read(place), up, metres, fps)
+            return glb.read_skeleton_clip(place, clip, fps, up=up, unit=metres)
         except FormatError:
-            continue
-    raise first_error
+            raise error from None
+    return moving if moving.n_frames > 1 else moving.mesh

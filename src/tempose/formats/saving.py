@@ -9,7 +9,7 @@ from pathlib import Path
 from tempose.clips import Mesh, MeshClip
 from tempose.formats._frames import SEQUENCE_SUFFIXES, split_counter
 from tempose.formats._place import metres_per_unit
-from tempose.formats._sequence import write_sequence, write_still
+from tempose.formats._sequence_write import write_sequence, write_still
 from tempose.formats._table import FORMATS, PathLike, Unit, check_arguments
 from tempose.formats.conventions import FormatError
 from tempose.typing import Progress, silent

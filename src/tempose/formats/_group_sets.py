@@ -1,0 +1,66 @@
+"""Groups as one number a polygon: which set of groups it is in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tempose.clips import Mesh
+from tempose.formats._polygons import polygon_of_triangle
+from tempose.typing import IntArray
+
+
+def group_sets(mesh: Mesh, counts: IntArray) -> tuple[IntArray, list[tuple[str, ...]]]:
+    """Give every set of groups that some polygon is in a number.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Mesh with groups.
+    counts : (p,) int
+        Corners per polygon.
+
+    Returns
+    -------
+    set_of_polygon : (p,) ndarray of int
+        Which set; a polygon is in a group if its first triangle is.
+    sets : list of tuple of str
+        Names of every set; set 0 is always the empty one.
+    """
+    p = len(counts)
+    triangles = counts - 2
+    first_triangle = np.cumsum(triangles) - triangles
+    numbers = np.zeros(p, np.int64)
+    sets: list[tuple[str, ...]] = [()]
+    for name, members in mesh.groups.items():
+        inside = np.zeros(len(mesh.faces), np.bool_)
+        inside[members] = True
+        # every set splits in two: those of its polygons that are in this group, and the rest
+        chosen = inside[first_triangle]
+        for old in np.unique(numbers[chosen]).tolist():
+            numbers[chosen & (numbers == old)] = len(sets)
+            sets.append((*sets[old], name))
+    used, numbers = np.unique(np.append(0, numbers), return_inverse=True)
+    return numbers[1:], [sets[k] for k in used.tolist()]
+
+
+def groups_of_sets(numbers: IntArray, sets: list[tuple[str, ...]], counts: IntArray) -> dict[str, IntArray]:
+    """List the triangles of every group: the inverse of `group_sets`.
+
+    Parameters
+    ----------
+    numbers : (p,) int
+        Set of every polygon.
+    sets : list of tuple of str
+        Names of every set.
+    counts : (p,) int
+        Corners per polygon.
+
+    Returns
+    -------
+    dict of str to ndarray of int
+        Group to triangle indices.
+    """
+    of_triangle = numbers[polygon_of_triangle(counts)]
+    names = dict.fromkeys(name for names in sets for name in names)
+    holders = {name: [k for k, names in enumerate(sets) if name in names] for name in names}
+    return {name: np.flatnonzero(np.isin(of_triangle, ids)) for name, ids in holders.items()}

@@ -1,0 +1,114 @@
+"""Arrays of a ``.npz`` or ``.npy`` file, sizes checked before anything is allocated, never unpickled."""
+
+from __future__ import annotations
+
+import math
+import struct
+import tokenize
+import zipfile
+import zlib
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from tempose.formats._input import unreadable
+from tempose.formats.conventions import FormatError
+
+# what zipfile, zlib and the header parser of numpy are known to raise on damaged files
+_BROKEN = (
+    ValueError, KeyError, IndexError, TypeError, EOFError, OSError, RuntimeError, NotImplementedError,
+    OverflowError, AttributeError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error, struct.error,
+    tokenize.TokenError,
+)  # fmt: skip
+_DEFLATE_LIMIT = 1032
+"""Deflate never expands more than this, so a member that claims more lies (zlib technical details)."""
+
+
+def read_members(path: str) -> dict[str, Any]:
+    """Read all arrays of a ``.npz`` archive.
+
+    Parameters
+    ----------
+    path : str
+        File to read.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Arrays by name.
+
+    Raises
+    ------
+    FormatError
+        If the archive or an array in it is broken or needs pickle.
+    """
+    name = ""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            arrays: dict[str, Any] = {}
+            size = Path(path).stat().st_size
+            for info in archive.infolist():
+                name = info.filename
+                if not 0 <= info.file_size <= _DEFLATE_LIMIT * min(info.compress_size, size) + 64:
+                    raise ValueError(f"states {info.file_size} bytes, more than the file can hold")
+                with archive.open(info) as stream:
+                    arrays[name.removesuffix(".npy")] = _read_array(stream, info.file_size)
+            return arrays
+    except OSError as error:
+        raise FormatError(unreadable(path, error)) from None
+    except _BROKEN as error:
+        place = f", array {name!r}" if name else ""
+        raise FormatError(f"{path}{place}: expected a numpy archive (.npz): {_one_line(error)}") from None
+
+
+def read_single(path: str) -> Any:
+    """Read the array of a ``.npy`` file.
+
+    Parameters
+    ----------
+    path : str
+        File to read.
+
+    Returns
+    -------
+    ndarray
+        The array.
+
+    Raises
+    ------
+    FormatError
+        If it is broken or needs pickle.
+    """
+    try:
+        with open(path, "rb") as stream:
+            return _read_array(stream, Path(path).stat().st_size)
+    except OSError as error:
+        raise FormatError(unreadable(path, error)) from None
+    except _BROKEN as error:
+        raise FormatError(f"{path}: expected a numpy array (.npy): {_one_line(error)}") from None
+
+
+def _read_array(stream: IO[bytes], size: int) -> Any:
+    version = np.lib.format.read_magic(stream)
+    header = {
+        (1, 0): np.lib.format.read_array_header_1_0,
+        (2, 0): np.lib.format.read_array_header_2_0,
+    }.get(version)
+    if header is None:
+        raise ValueError(f"unknown version {version} of the numpy format")
+    shape, fortran, dtype = header(stream)
+    if dtype.hasobject:
+        raise ValueError("holds Python objects, which are never unpickled")
+    length = math.prod(shape) * dtype.itemsize
+    if length > size or len(shape) > 8:
+        raise ValueError(f"its header states shape {shape}, more than its {size} bytes hold")
+    data = stream.read(length)
+    if len(data) < length:
+        raise ValueError(f"expected {length} bytes of shape {shape}, found {len(data)}")
+    array = np.frombuffer(data, dtype, math.prod(shape))
+    return array.reshape(shape, order="F" if fortran else "C")
+
+
+def _one_line(error: BaseException) -> str:
+    return (" ".join(str(error).split()) or type(error).__name__)[:200]
