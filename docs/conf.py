@@ -24,6 +24,10 @@ numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False
 
 
+MEMBERS = {"typing": " Progress, silent"}
+"""Packages of which only some names are documented: array aliases have no signature to show."""
+
+
 def write_api_pages() -> None:
     """Write one page a package: its docstring and what its ``__all__`` names."""
     folder = Path(__file__).parent / "api"
@@ -35,7 +39,7 @@ def write_api_pages() -> None:
     )
     for name in names:
         title = f"tempose.{name}"
-        text = f"# {title}\n\n```{{eval-rst}}\n.. automodule:: {title}\n   :members:\n```\n"
+        text = f"# {title}\n\n```{{eval-rst}}\n.. automodule:: {title}\n   :members:{MEMBERS.get(name, '')}\n```\n"
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
     for stale in set(folder.glob("*.md")) - {folder / f"{name}.md" for name in names}:
         stale.unlink()

@@ -62,6 +62,8 @@ def _facts(file: str, thing: Mesh | MeshClip | SkeletonClip) -> dict[str, Any]:
         facts |= _motion(thing) if isinstance(thing, tempose.MeshClip) else {}
         problems = tempose.geometry.find_defects(mesh.vertices, mesh.faces).as_dict()
         facts |= _surface(mesh) | {"pieces": problems.pop("pieces")}
+    if source.format in ("glb", "gltf"):
+        facts |= _scene(file)
     return facts | {
         "up": source.up,
         "unit_metres": source.unit,
@@ -86,6 +88,17 @@ def _surface(mesh: Mesh) -> dict[str, Any]:
         "height_metres": mesh.height,
         "diagonal_metres": mesh.diagonal,
     }
+
+
+def _scene(file: str) -> dict[str, Any]:
+    from tempose.formats.glb import clip_names
+
+    facts: dict[str, Any] = {"animations": list(clip_names(file))}
+    try:
+        skin = tempose.formats.load_skin(file)
+    except tempose.formats.FormatError:
+        return facts
+    return facts | {"joints": list(skin.skeleton.names)}
 
 
 def _text(name: str, value: Any) -> str:
