@@ -39,7 +39,8 @@ def write_api_pages() -> None:
     )
     for name in names:
         title = f"tempose.{name}"
-        text = f"# {title}\n\n```{{eval-rst}}\n.. automodule:: {title}\n   :members:{MEMBERS.get(name, '')}\n```\n"
+        rst = f".. automodule:: {title}\n   :members:{MEMBERS.get(name, '')}"
+        text = f"# {title}\n\n```{{eval-rst}}\n{rst}\n```\n"
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
     for stale in set(folder.glob("*.md")) - {folder / f"{name}.md" for name in names}:
         stale.unlink()

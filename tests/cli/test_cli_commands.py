@@ -85,6 +85,20 @@ def test_convert_states_input_and_output_apart(
     assert_allclose(raw[..., 1], -clip.vertices[..., 2] * 10, rtol=1e-5, atol=1e-5)
 
 
+def test_tolerance_makes_a_smaller_file_within_it(run: Run, tmp_path: Path, rng: np.random.Generator) -> None:
+    V, t = rng.normal(size=(2, 200, 3)), np.linspace(0, 6, 40)[:, None, None]
+    mesh = tempose.Mesh(V[0], np.arange(198)[:, None] + np.arange(3))
+    tempose.save(tmp_path / "clip.npz", MeshClip(V[0] + np.sin(t) * V[1], mesh, 30))
+    sizes: list[int] = []
+    for words in ([], ["--tolerance", 0.01]):
+        out = tmp_path / f"{len(sizes)}.glb"
+        assert run("convert", tmp_path / "clip.npz", out, *words).code == 0
+        errors = json.loads(run("compare", tmp_path / "clip.npz", out, "--json").out)
+        assert errors["max_percent"] <= (0.01 if words else 1e-4)
+        sizes.append(out.stat().st_size)
+    assert sizes[1] < 0.2 * sizes[0]
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -96,6 +110,7 @@ def test_convert_states_input_and_output_apart(
         (["--unit", "furlong"], "unit must be"),
         (["--group", "wing"], "wing"),
         (["--from-fps", "0"], "fps must be positive"),
+        (["--tolerance", "0.1"], "--tolerance is for .glb"),
     ],
 )
 def test_wrong_values_are_refused(

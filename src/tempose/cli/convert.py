@@ -9,10 +9,11 @@ import typer
 
 import tempose
 from tempose.cli.console import note, progress_bar, writing
-from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, as_clip_choice, load
+from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, load
 
 if TYPE_CHECKING:
     from tempose.clips import Mesh, MeshClip
+    from tempose.typing import Progress
 
 
 def convert(  # numpydoc ignore=PR01
@@ -42,6 +43,12 @@ def convert(  # numpydoc ignore=PR01
         str | None,
         typer.Option(metavar="UNIT", help="Unit of the output: mm, cm, dm, m, in, ft, or metres per unit."),
     ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="P", help="Percent of the diagonal by which a compact GLB may be off; else lossless."
+        ),
+    ] = None,
     group: Group = None,
     clip: Clip = None,
     topology: Topology = None,
@@ -56,7 +63,7 @@ def convert(  # numpydoc ignore=PR01
         unit=from_unit,
         fps=from_fps,
         group=group,
-        clip=as_clip_choice(clip),
+        clip=clip,
         topology=topology,
     )
     if isinstance(loaded, tempose.SkeletonClip):
@@ -68,9 +75,20 @@ def convert(  # numpydoc ignore=PR01
         loaded = _retimed(loaded, fps, start, stop, step)
     elif any(value is not None for value in (fps, start, stop, step)):
         raise ValueError(f"{source}: is still, so --fps, --start, --stop and --step do not apply")
+    if tolerance is not None and out.suffix.lower() != ".glb":
+        raise ValueError(f"{out}: --tolerance is for .glb")
     with progress_bar() as progress, writing(out):
-        tempose.save(out, loaded, up=up, unit=unit, progress=progress)
+        if tolerance is None:
+            tempose.save(out, loaded, up=up, unit=unit, progress=progress)
+        else:
+            _write_compact(out, loaded, tolerance, progress)
     note(f"wrote {out}: {_size(loaded)}")
+
+
+def _write_compact(out: Path, thing: Mesh | MeshClip, tolerance: float, progress: Progress) -> None:
+    from tempose.formats.glb import write
+
+    write(out, thing, tolerance=tolerance, progress=progress)
 
 
 def _retimed(

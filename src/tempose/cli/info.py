@@ -8,7 +8,7 @@ import typer
 
 import tempose
 from tempose.cli.console import progress_bar, show_json, show_table
-from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Json, Topology, as_clip_choice
+from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Json, Topology
 
 if TYPE_CHECKING:
     from tempose.clips import Mesh, MeshClip, SkeletonClip
@@ -38,7 +38,7 @@ def info(  # numpydoc ignore=PR01
             up=from_up,
             unit=from_unit,
             fps=from_fps,
-            clip=as_clip_choice(clip),
+            clip=clip,
             topology=topology,
             progress=progress,
         )

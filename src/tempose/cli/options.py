@@ -25,29 +25,13 @@ FromFps = Annotated[
 ]
 Group = Annotated[str | None, typer.Option(metavar="NAME", help="Keep only this group of faces.")]
 Clip = Annotated[
-    str | None, typer.Option(metavar="NAME|NUMBER", help="Which animation, where the input holds several.")
+    str | None, typer.Option(metavar="NAME", help="Which animation, where the input holds several.")
 ]
 Topology = Annotated[
     Path | None,
     typer.Option(metavar="MESH", help="Mesh whose faces belong to the input, where it holds positions only."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
-
-
-def as_clip_choice(clip: str | None) -> str | int | None:
-    """Read a choice of animation: digits are a number, anything else a name.
-
-    Parameters
-    ----------
-    clip : str or None
-        What was typed.
-
-    Returns
-    -------
-    str, int or None
-        What `tempose.load` takes.
-    """
-    return int(clip) if clip is not None and clip.isdecimal() else clip
 
 
 def load(path: str, **options: Any) -> Mesh | MeshClip | SkeletonClip:

@@ -9,7 +9,7 @@ import typer
 
 import tempose
 from tempose.cli.console import note, progress_bar, writing
-from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, as_clip_choice, load
+from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, load
 
 if TYPE_CHECKING:
     from tempose.clips import Mesh, MeshClip, SkeletonClip
@@ -52,7 +52,7 @@ def render(  # numpydoc ignore=PR01
         raise ValueError(f"{out}: pictures are written as .png, .gif or .mp4")
     if view and len(view) > 1 and suffix != ".png":
         raise ValueError(f"{out}: a film has one view, got {len(view)}")
-    options = {"group": group, "clip": as_clip_choice(clip), "topology": topology}
+    options = {"group": group, "clip": clip, "topology": topology}
     shown = [
         _surface(path, load(path, up=from_up, unit=from_unit, fps=from_fps, **options)) for path in clips
     ]
