@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.clips import SkeletonClip, SkinnedMesh
+from tempose.clips import Skeleton, SkeletonClip, SkinnedMesh
 from tempose.kinematics.forward import forward_kinematics, rest_transforms
 from tempose.rotations import conjugate, multiply, rotate, to_matrix
 from tempose.typing import FloatArray
 
 
-def linear_blend_skinning(skin: SkinnedMesh, rotations: FloatArray, root_position: FloatArray) -> FloatArray:
+def linear_blend_skinning(
+    skin: SkinnedMesh, rotations: FloatArray, root_position: FloatArray, skeleton: Skeleton | None = None
+) -> FloatArray:
     """Pose a skinned mesh.
 
     Parameters
@@ -21,6 +23,9 @@ def linear_blend_skinning(skin: SkinnedMesh, rotations: FloatArray, root_positio
         Local rotations wxyz.
     root_position : (T, 3) float
         World position of the root, metres.
+    skeleton : Skeleton, optional
+        The same joints with other offsets, if the motion was made for other bone lengths than the bind pose
+        has.
 
     Returns
     -------
@@ -28,7 +33,7 @@ def linear_blend_skinning(skin: SkinnedMesh, rotations: FloatArray, root_positio
         Posed vertices, metres.
     """
     bind_rotation, bind_position = rest_transforms(skin.skeleton)
-    world, position = forward_kinematics(skin.skeleton, rotations, root_position)
+    world, position = forward_kinematics(skeleton or skin.skeleton, rotations, root_position)
     turn = multiply(world, conjugate(bind_rotation))
     shift = position - rotate(turn, bind_position)
     V1 = np.column_stack([skin.mesh.vertices, np.ones(len(skin.mesh.vertices))])
@@ -47,7 +52,7 @@ def bake(skin: SkinnedMesh, clip: SkeletonClip) -> FloatArray:
     skin : SkinnedMesh
         Bound to a skeleton of the same joints as that of `clip`.
     clip : SkeletonClip
-        T frames.
+        T frames; its own offsets are used.
 
     Returns
     -------
@@ -64,4 +69,4 @@ def bake(skin: SkinnedMesh, clip: SkeletonClip) -> FloatArray:
             f"clip must move the {skin.skeleton.n_joints} joints of the skin, "
             f"got {clip.skeleton.n_joints} joints, first {clip.skeleton.names[0]!r}"
         )
-    return linear_blend_skinning(skin, clip.rotations, clip.root_position)
+    return linear_blend_skinning(skin, clip.rotations, clip.root_position, clip.skeleton)
