@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tempose.rotations.average import mean_weights
 from tempose.rotations.quaternions import normalise
 from tempose.typing import FloatArray
 
@@ -23,12 +24,14 @@ def shortest_rotation(a: FloatArray, b: FloatArray) -> FloatArray:
     """
     a, b = _unit(a), _unit(b)
     a, b = np.broadcast_arrays(a, b)
-    w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
-    q = np.concatenate([w, np.cross(a, b)], axis=-1)
+    # through a + b, not 1 + a.b: that loses all digits of the angle when a and b are nearly opposite
+    middle = a + b
+    w = 0.5 * np.sum(middle * middle, axis=-1, keepdims=True)
+    q = np.concatenate([w, np.cross(a, middle)], axis=-1)
     # opposite: any axis perpendicular to a, made from the coordinate axis least along a
     other = np.eye(3)[np.abs(a).argmin(axis=-1)]
     half_turn = np.concatenate([np.zeros_like(w), np.cross(a, other)], axis=-1)
-    return normalise(np.where(w > 1e-12, q, half_turn))
+    return normalise(np.where(w > 1e-29, q, half_turn))
 
 
 def _unit(x: FloatArray) -> FloatArray:
@@ -64,15 +67,20 @@ def procrustes_rotation(P: FloatArray, Q: FloatArray, weights: FloatArray | None
     P, Q : (..., k, 3) float
         Corresponding points.
     weights : (k,) float, optional
-        Weight of each pair.
+        Weight of each pair, not negative, not all zero.
 
     Returns
     -------
     (..., 3, 3) ndarray
         ``R`` minimising ``sum w |R (p - mean p) - (q - mean q)|^2``.
+
+    Raises
+    ------
+    ValueError
+        If there is no point, or the weights cannot be weights.
     """
-    w = np.ones(P.shape[-2]) if weights is None else np.asarray(weights, dtype=np.float64)
-    w = w / w.sum()
+    P, Q = np.asarray(P, dtype=np.float64), np.asarray(Q, dtype=np.float64)
+    w = mean_weights(weights, P.shape[-2])
     P0 = P - np.einsum("k,...ki->...i", w, P)[..., None, :]
     Q0 = Q - np.einsum("k,...ki->...i", w, Q)[..., None, :]
     return polar_rotation(np.einsum("k,...ki,...kj->...ij", w, Q0, P0))

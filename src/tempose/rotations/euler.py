@@ -62,12 +62,24 @@ def from_euler_degrees(angles: FloatArray, order: str) -> FloatArray:
     (..., 4) ndarray
         Quaternions wxyz.
 
+    Raises
+    ------
+    ValueError
+        If `order` holds another letter, or there is not one angle a letter.
+
     Examples
     --------
     >>> np.round(from_euler_degrees(np.array([90.0]), "z"), 6).tolist()
     [0.707107, 0.0, 0.0, 0.707107]
     """
-    half = np.radians(np.asarray(angles, dtype=np.float64)) / 2
+    angles = np.asarray(angles, dtype=np.float64)
+    if not set(order.lower()) <= set("xyz"):
+        raise ValueError(f"order must be letters out of 'xyz', got {order!r}")
+    if angles.ndim == 0 or angles.shape[-1] != len(order):
+        raise ValueError(
+            f"angles must have one column for each letter of {order!r}, got shape {angles.shape}"
+        )
+    half = np.radians(angles) / 2
     q = np.broadcast_to(np.array([1.0, 0, 0, 0]), (*half.shape[:-1], 4))
     for k, letter in enumerate(order.lower()):
         step = np.zeros((*half.shape[:-1], 4))

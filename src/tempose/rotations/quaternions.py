@@ -93,9 +93,9 @@ def rotate(q: FloatArray, x: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> half = np.sqrt(0.5)
-    >>> np.round(rotate(np.array([half, 0, 0, half]), np.array([1.0, 0, 0])), 12).tolist()
-    [0.0, 1.0, 0.0]
+    >>> half_turn_about_z = np.array([0.0, 0, 0, 1])
+    >>> rotate(half_turn_about_z, np.array([1.0, 2, 3])).tolist()
+    [-1.0, -2.0, 3.0]
     """
     q = np.asarray(q, dtype=np.float64)
     w, v = q[..., :1], q[..., 1:]
