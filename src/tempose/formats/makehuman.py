@@ -40,7 +40,7 @@ def read_skin(
     Returns
     -------
     SkinnedMesh
-        J joints, each at the head of its bone; tips of the leaves are the tails. Rest rotations are the
+        J joints, each at the head of its bone; tips are the tails of all bones. Rest rotations are the
         identity, rows of weights sum to 1.
 
     Raises
@@ -64,9 +64,7 @@ def read_skin(
     heads, tails = (np.array([V[needed[name][k]].mean(axis=0) for name in names]) for k in (0, 1))
     index = np.array([-1 if (parent := parents[name]) is None else names.index(parent) for name in names])
     offsets = heads - np.where(index[:, None] >= 0, heads[index], 0.0)
-    tips = tails - heads
-    tips[index[index >= 0]] = np.nan
-    skeleton = Skeleton(tuple(names), index, offsets, tips=tips)
+    skeleton = Skeleton(tuple(names), index, offsets, tips=tails - heads)
     return SkinnedMesh(mesh, skeleton, _weights(weights_path, weights, names, len(mesh.vertices)))
 
 

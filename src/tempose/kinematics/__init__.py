@@ -1,6 +1,21 @@
-"""Skeletons in motion: forward kinematics and skinning."""
+"""Skeletons in motion: forward kinematics, skinning, and which joint plays which part of a body."""
 
+from tempose.kinematics.bone_axes import BoneEnd, bone_axis, bone_ends, role_lengths
 from tempose.kinematics.forward import forward_kinematics, rest_transforms
+from tempose.kinematics.roles import ROLES, bones_of_role, find_roles
+from tempose.kinematics.sides import side_contradictions
 from tempose.kinematics.skinning import linear_blend_skinning
 
-__all__ = ["forward_kinematics", "linear_blend_skinning", "rest_transforms"]
+__all__ = [
+    "ROLES",
+    "BoneEnd",
+    "bone_axis",
+    "bone_ends",
+    "bones_of_role",
+    "find_roles",
+    "forward_kinematics",
+    "linear_blend_skinning",
+    "rest_transforms",
+    "role_lengths",
+    "side_contradictions",
+]
