@@ -170,7 +170,7 @@ def _terminal(tree: _Spots, role: str, joint: int) -> BoneEnd | None:
         return BoneEnd(joint, joint, tip)
     children = tree.topmost(below)
     ends = [j for j in children if _END.search(names[j])]
-    if role != "head":
+    if role not in TRUNK:
         ends = ends or sorted(children, key=lambda j: -tree.steps[j])
     return BoneEnd(joint, ends[0]) if ends else None
 
