@@ -41,7 +41,18 @@ def atomic_path(path: str | os.PathLike[str], *, folder: bool = False) -> Genera
             part.mkdir()
         yield part
         if folder and final.is_dir():
-            os.replace(final, scratch / "replaced")
-        os.replace(part, final)
+            _replace_folder(part, final, scratch / "replaced")
+        else:
+            os.replace(part, final)
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _replace_folder(part: Path, final: Path, aside: Path) -> None:
+    """Swap folders, which no single call does; if the second step fails, undo the first."""
+    os.replace(final, aside)
+    try:
+        os.replace(part, final)
+    except BaseException:
+        os.replace(aside, final)
+        raise

@@ -8,6 +8,8 @@ import numpy as np
 
 from tempose.typing import FloatArray, IntArray
 
+_INT32 = 2**31
+
 
 def _shape_text(shape: tuple[int | str, ...]) -> str:
     inner = ", ".join(str(s) for s in shape)
@@ -79,20 +81,24 @@ def as_indices(value: Any, name: str, shape: tuple[int | str, ...], limit: int |
     >>> as_indices([[0, 1, 2]], "F", ("m", 3), limit=3).dtype
     dtype('int32')
     """
-    raw = np.asarray(value)
+    try:
+        raw = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} must hold integers in shape {_shape_text(shape)}: {error}") from None
+    limit = _INT32 if limit is None else limit
     if raw.size and raw.dtype.kind not in "iu":
         raise ValueError(f"{name} must hold integers, got dtype {raw.dtype}")
-    if raw.size and (raw.min() < 0 or (limit is not None and raw.max() >= limit)):
+    if raw.size and (raw.min() < 0 or raw.max() >= limit):
         bad = raw.min() if raw.min() < 0 else raw.max()
         where = tuple(int(i) for i in np.argwhere(raw == bad)[0])
-        upper = "" if limit is None else f" and below {limit}"
-        raise ValueError(f"{name} must hold indices from 0{upper}, got {bad} at index {where}")
+        raise ValueError(f"{name} must hold indices from 0 and below {limit}, got {bad} at index {where}")
     return _as_shape(raw, name, shape, np.int32)
 
 
 def _as_shape(value: Any, name: str, shape: tuple[int | str, ...], dtype: Any) -> Any:
     try:
-        array = np.asarray(value, dtype=dtype)
+        with np.errstate(over="ignore"):  # what overflows float32 becomes infinite, which as_floats refuses
+            array = np.asarray(value, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise ValueError(
             f"{name} must be an array of numbers of shape {_shape_text(shape)}: {error}"

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tempose._validate import read_only
+from tempose.clips._frozen import Frozen
 from tempose.clips.source import Source
 from tempose.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
-class MarkerClip:
+class MarkerClip(Frozen):
     """Labelled points over time; a missing sample is NaN."""
 
     labels: tuple[str, ...]

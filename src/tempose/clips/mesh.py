@@ -9,12 +9,13 @@ from types import MappingProxyType
 import numpy as np
 
 from tempose._validate import as_floats, as_indices, read_only
+from tempose.clips._frozen import Frozen
 from tempose.clips.source import Source
 from tempose.typing import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
+class Mesh(Frozen):
     """Triangles in space: right-handed, Y up, +Z front, metres, counter-clockwise faces."""
 
     vertices: FloatArray

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tempose._validate import read_only
+from tempose.clips._frozen import Frozen
 from tempose.clips.mesh import Mesh
 from tempose.clips.source import Source
 from tempose.typing import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
-class MeshClip:
+class MeshClip(Frozen):
     """Frames of one mesh: positions per frame over the topology of `mesh`."""
 
     vertices: FloatArray

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tempose._validate import as_floats, as_indices, read_only
+from tempose.clips._frozen import Frozen
 from tempose.clips.source import Source
 from tempose.typing import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
-class Skeleton:
+class Skeleton(Frozen):
     """Joints, parents first; the root has parent -1."""
 
     names: tuple[str, ...]
@@ -34,21 +35,35 @@ class Skeleton:
         if len(set(names)) != J:
             twice = next(name for i, name in enumerate(names) if name in names[:i])
             raise ValueError(f"names must be distinct, got {twice!r} twice")
-        parents = np.asarray(self.parents, dtype=np.int32)
-        if parents.shape != (J,):
-            raise ValueError(f"parents must have shape ({J},), got {parents.shape}")
+        parents = np.asarray(self.parents)
+        if parents.shape != (J,) or parents.dtype.kind not in "iu":
+            raise ValueError(
+                f"parents must be integers of shape ({J},), got {parents.dtype} of shape {parents.shape}"
+            )
+        parents = parents.astype(np.int32)
         if parents[0] != -1 or (parents[1:] < 0).any() or (parents >= np.arange(J)).any():
             raise ValueError("parents must come before their children, with joint 0 the only root (-1)")
-        set_ = object.__setattr__
-        set_(self, "names", names)
-        set_(self, "parents", read_only(parents))
-        set_(self, "offsets", read_only(as_floats(self.offsets, "offsets", (J, 3))))
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "parents", read_only(parents))
+        self._check_pose(J)
+
+    def _check_pose(self, J: int) -> None:
         rest = np.tile([1.0, 0, 0, 0], (J, 1)) if self.rest_rotations is None else self.rest_rotations
-        set_(self, "rest_rotations", read_only(as_floats(rest, "rest_rotations", (J, 4))))
+        rest = as_floats(rest, "rest_rotations", (J, 4))
+        norms = np.linalg.norm(rest, axis=-1)
+        if np.abs(norms - 1).max() > 1e-3:
+            j = int(np.abs(norms - 1).argmax())
+            raise ValueError(
+                f"rest_rotations must be unit quaternions, got norm {norms[j]:.4g} at joint {self.names[j]!r}"
+            )
         tips = np.full((J, 3), np.nan) if self.tips is None else np.asarray(self.tips, dtype=np.float64)
         if tips.shape != (J, 3):
             raise ValueError(f"tips must have shape ({J}, 3), got {tips.shape}")
-        set_(self, "tips", read_only(tips))
+        if np.isinf(tips).any():
+            raise ValueError("tips must be finite or NaN (unknown), found infinity")
+        object.__setattr__(self, "offsets", read_only(as_floats(self.offsets, "offsets", (J, 3))))
+        object.__setattr__(self, "rest_rotations", read_only(rest))
+        object.__setattr__(self, "tips", read_only(tips))
 
     @property
     def n_joints(self) -> int:
@@ -94,7 +109,7 @@ class Skeleton:
 
 
 @dataclass(frozen=True, eq=False)
-class SkeletonClip:
+class SkeletonClip(Frozen):
     """Motion of a skeleton: a rotation a joint and the place of the root, per frame."""
 
     skeleton: Skeleton

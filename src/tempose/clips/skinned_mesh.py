@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose._validate import as_floats, read_only
+from tempose.clips._frozen import Frozen
 from tempose.clips.mesh import Mesh
 from tempose.clips.skeleton import Skeleton
 from tempose.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
-class SkinnedMesh:
+class SkinnedMesh(Frozen):
     """A mesh in its bind pose, the joints in it and the weights between them."""
 
     mesh: Mesh

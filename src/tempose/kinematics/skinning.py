@@ -30,7 +30,7 @@ def linear_blend_skinning(
     Returns
     -------
     (T, n, 3) ndarray
-        Posed vertices, metres.
+        Posed vertices, metres; those bound to nothing stay where they are.
     """
     bind_rotation, bind_position = rest_transforms(skin.skeleton)
     world, position = forward_kinematics(skeleton or skin.skeleton, rotations, root_position)
@@ -41,7 +41,10 @@ def linear_blend_skinning(
     lifted = (skin.weights[:, :, None] * V1[:, None, :]).reshape(len(V1), -1)
     matrices = np.concatenate([to_matrix(turn), shift[..., None]], axis=-1)
     columns = matrices.transpose(1, 3, 0, 2).reshape(lifted.shape[1], -1)
-    return (lifted @ columns).reshape(len(V1), len(world), 3).transpose(1, 0, 2)
+    posed = (lifted @ columns).reshape(len(V1), len(world), 3).transpose(1, 0, 2)
+    unbound = skin.weights.sum(axis=1) == 0
+    posed[:, unbound] = skin.mesh.vertices[unbound]
+    return posed
 
 
 def bake(skin: SkinnedMesh, clip: SkeletonClip) -> FloatArray:
