@@ -10,17 +10,6 @@ import numpy as np
 from tempose._validate import as_floats, read_only
 from tempose.typing import FloatArray
 
-NAMED_VIEWS = {
-    "front": (0.0, 0.0),
-    "left": (np.pi / 2, 0.0),
-    "side": (np.pi / 2, 0.0),
-    "back": (np.pi, 0.0),
-    "right": (-np.pi / 2, 0.0),
-    "top": (0.0, np.pi / 2),
-    "three-quarter": (np.radians(35.0), np.radians(12.0)),
-}
-"""Azimuth and elevation in radians; ``"left"`` looks at the model's left side, which is +X."""
-
 
 @dataclass(frozen=True, eq=False)
 class Camera:
@@ -193,33 +182,6 @@ def box_corners(points: FloatArray) -> FloatArray:
     if len(points) != 2:
         return points
     return np.array([[x, y, z] for x in points[:, 0] for y in points[:, 1] for z in points[:, 2]])
-
-
-def view_named(view: str | float | tuple[float, float]) -> tuple[float, float]:
-    """Return the direction of a view.
-
-    Parameters
-    ----------
-    view : str, float or (float, float)
-        A name out of `NAMED_VIEWS`, an azimuth, or azimuth and elevation in radians.
-
-    Returns
-    -------
-    (float, float)
-        Azimuth and elevation, radians.
-
-    Raises
-    ------
-    ValueError
-        If there is no view of that name.
-    """
-    if isinstance(view, str):
-        if view not in NAMED_VIEWS:
-            raise ValueError(f"a view must be an angle or one of {', '.join(NAMED_VIEWS)}, got {view!r}")
-        return NAMED_VIEWS[view]
-    if isinstance(view, tuple):
-        return float(view[0]), float(view[1])
-    return float(view), 0.0
 
 
 def _apex(x: FloatArray, z: FloatArray, slope: float) -> tuple[float, float]:

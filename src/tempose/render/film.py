@@ -12,10 +12,13 @@ import numpy as np
 from tempose.clips import Mesh, MeshClip
 from tempose.render.camera import Camera
 from tempose.render.colors import Picture
-from tempose.render.follow import as_clip, clip_cameras, floor_level
+from tempose.render.follow import clip_cameras
 from tempose.render.frame import render_frame
 from tempose.render.sheet import contact_sheet
-from tempose.render.writers import save_gif, save_mp4, save_png
+from tempose.render.subject import as_clip, floor_level, frame_choice
+from tempose.render.video import save_mp4
+from tempose.render.workers import in_order
+from tempose.render.writers import save_gif, save_png
 from tempose.typing import Progress, silent
 
 FORMATS = (".png", ".gif", ".mp4")
@@ -31,6 +34,7 @@ def film(
     track: bool | None = None,
     segments: Any = None,
     points: Any = None,
+    workers: int | None = None,
     **look: Any,
 ) -> Iterator[Picture]:
     """Render the frames of a clip one after the other.
@@ -53,6 +57,8 @@ def film(
         Bones drawn over the frames, metres.
     points : (T, p, 3) array_like, optional
         Markers drawn over the frames, metres.
+    workers : int, optional
+        Frames rendered at a time; None for one per core, at most four.
     **look
         Passed to `render_frame`.
 
@@ -68,12 +74,16 @@ def film(
         if isinstance(view, Camera)
         else clip_cameras(clip, view, aspect=size[0] / size[1], track=track)
     )
-    for t in range(clip.n_frames) if frames is None else frames:
+
+    def picture(t: int) -> Picture:
         options = dict(look)
         for key, array in (("lines", segments), ("points", points)):
             if array is not None:
                 options[key] = array[t]
-        yield render_frame(clip.vertices[t], clip.faces, path[t], size=size, ground=level, **options)
+        return render_frame(clip.vertices[t], clip.faces, path[t], size=size, ground=level, **options)
+
+    chosen = range(clip.n_frames) if frames is None else frame_choice(frames, clip.n_frames)
+    yield from in_order(picture, chosen, workers)
 
 
 def turntable(
@@ -83,6 +93,7 @@ def turntable(
     elevation: float = np.radians(12.0),
     size: tuple[int, int] = (640, 640),
     ground: float | str | None = "auto",
+    workers: int | None = None,
     **look: Any,
 ) -> Iterator[Picture]:
     """Render a mesh while the camera goes once around it.
@@ -99,6 +110,8 @@ def turntable(
         Width and height, pixels.
     ground : float, "auto" or None, default "auto"
         Height of the floor, metres; None for no floor.
+    workers : int, optional
+        Pictures rendered at a time; None for one per core, at most four.
     **look
         Passed to `render_frame`.
 
@@ -115,9 +128,12 @@ def turntable(
     # A box that is the same from every side keeps the camera at one distance.
     low, high = V.min(axis=0), V.max(axis=0)
     low[[0, 2]], high[[0, 2]] = centre[[0, 2]] - 0.75 * reach, centre[[0, 2]] + 0.75 * reach
-    for azimuth in np.arange(count) * (2 * np.pi / count):
+
+    def picture(azimuth: float) -> Picture:
         camera = Camera.fit([low, high], azimuth, elevation, aspect=size[0] / size[1])
-        yield render_frame(V, clip.faces, camera, size=size, ground=level, **look)
+        return render_frame(V, clip.faces, camera, size=size, ground=level, **look)
+
+    yield from in_order(picture, np.arange(count) * (2 * np.pi / count), workers)
 
 
 def render(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,25 +9,17 @@ import numpy as np
 from tempose._validate import as_floats, as_indices
 from tempose.render.camera import Camera
 from tempose.render.colors import Picture, as_colors, to_linear, to_srgb
-from tempose.render.ground import floor_picture
+from tempose.render.floor import floor_picture
 from tempose.render.lights import Lights, Quality, make_lights, quality_named
 from tempose.render.normals import corner_normals
 from tempose.render.overlay import draw_segments
-from tempose.render.surface import Samples, bulged, light_samples, oriented_normals, trace
+from tempose.render.paint import Paint, blend
+from tempose.render.surface import trace
 from tempose.render.themes import Theme, rgb, theme_named
-from tempose.typing import FloatArray, IntArray
+from tempose.typing import FloatArray
 
-KEY_LIGHT = (-0.62, 0.74, 0.62)
+KEY_LIGHT = (-0.72, 0.70, 0.42)
 """Towards the key light in the axes of the camera: from the upper left, over the viewer's shoulder."""
-
-
-@dataclass(frozen=True)
-class _Balance:
-    # Share of each light in what a white surface sends back, and the sheen of the key light.
-    key: float = 0.80
-    sky: float = 0.42
-    bounce: float = 0.16
-    sheen: float = 0.05
 
 
 def render_frame(
@@ -117,18 +108,21 @@ def render_frame(
     F = as_indices(F, "F", ("m", 3), limit=len(V))
     width, height = _checked_size(size)
     tone, work = theme_named(theme), quality_named(quality)
-    samples = trace(V, F, camera, (width, height), work.samples)
+    N = corner_normals(V, F, crease)
     lights = make_lights(V, F, key_direction(camera), work) if lit else None
-    albedo = _albedo(samples, V, F, colors, face_colors, tone)
-    if checker:
-        albedo = _chequered(albedo, samples, F, uv, uv_faces, checker, len(V))
-    shaded = _shaded(samples, V, F, albedo, camera, lights, crease, tone if show_back else None)
-    if wire:
-        shaded = _wired(shaded, samples, F, work.samples, tone)
-    picture, depth = _composed(samples, shaded, V, camera, lights, ground, tone)
-    _overlaid(picture, depth, camera, (width, height), lines, line_colors, line_width, "lines", tone.held)
+    paint = Paint.checked(V, F, colors, face_colors, uv, uv_faces, checker, wire, show_back, tone)
+    behind, floor_depth = _background(V, camera, (width, height), lights, ground, tone, work)
+    picture, depth = behind.copy(), np.full(width * height, np.inf)
+    for samples in trace(V, F, N, camera, (width, height), work.samples):
+        shaded = paint.shaded(samples, key_direction(camera), lights)
+        # What has sunk into the floor stays visible, but faint.
+        sunk = samples.depth > floor_depth[samples.pixel] + 1e-3 * np.abs(samples.depth)
+        shaded[sunk] = 0.4 * shaded[sunk] + 0.6 * behind[samples.pixel[sunk]]
+        blend(picture, depth, samples.pixel, samples.depth, shaded, work.samples**2)
+    picture, depth = picture.reshape(height, width, 3), depth.reshape(height, width)
+    _overlaid(picture, depth, camera, lines, line_colors, line_width, "lines", tone.held)
     spots = None if points is None else np.repeat(np.asarray(points, dtype=float)[:, None], 2, axis=1)
-    _overlaid(picture, depth, camera, (width, height), spots, point_colors, point_size, "points", tone.held)
+    _overlaid(picture, depth, camera, spots, point_colors, point_size, "points", tone.held)
     return np.round(to_srgb(picture) * 255).astype(np.uint8)
 
 
@@ -158,108 +152,28 @@ def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
-def _albedo(
-    samples: Samples, V: FloatArray, F: IntArray, colors: Any, face_colors: Any, tone: Theme
-) -> FloatArray:
-    if face_colors is not None:
-        return to_linear(as_colors(face_colors, "face_colors", len(F)))[samples.face]
-    if colors is None or isinstance(colors, str):
-        return np.tile(to_linear(rgb(colors or tone.mesh)), (len(samples.face), 1))
-    corner = to_linear(as_colors(colors, "colors", len(V)))[F[samples.face]]
-    return np.einsum("kc,kcd->kd", samples.weights, corner)
-
-
-def _chequered(
-    albedo: FloatArray, samples: Samples, F: IntArray, uv: Any, uv_faces: Any, squares: int, n: int
-) -> FloatArray:
-    if uv is None:
-        raise ValueError("checker needs uv, got None")
-    uv = as_floats(uv, "uv", (n if uv_faces is None else "k", 2))
-    G = F if uv_faces is None else as_indices(uv_faces, "uv_faces", (len(F), 3), limit=len(uv))
-    at = np.einsum("kc,kcd->kd", samples.weights, uv[G[samples.face]]) * squares
-    odd = (np.floor(at).sum(axis=1).astype(np.int64) % 2).astype(bool)
-    return np.where(odd[:, None], albedo * 0.35, albedo)
-
-
-def _shaded(
-    samples: Samples,
-    V: FloatArray,
-    F: IntArray,
-    albedo: FloatArray,
-    camera: Camera,
-    lights: Lights | None,
-    crease: float | None,
-    tint: Theme | None,
-) -> FloatArray:
-    N = corner_normals(V, F, crease)
-    normals, back = oriented_normals(samples, V, F, N, camera)
-    if tint is not None:
-        albedo = np.where(back[:, None], to_linear(rgb(tint.back)), albedo)
-    if lights is None:
-        return albedo
-    balance = _Balance()
-    start = bulged(samples, V, F, N, normals)
-    key, sky, bounce = light_samples(samples, start, normals, lights).T
-    d = key_direction(camera)
-    view = (
-        camera.position - samples.position if camera.fov else np.broadcast_to(camera.axes[2], normals.shape)
-    )
-    half = d + view / np.linalg.norm(view, axis=1, keepdims=True)
-    half /= np.linalg.norm(half, axis=1, keepdims=True)
-    diffuse = balance.key * key * np.maximum(normals @ d, 0) + balance.sky * sky + balance.bounce * bounce
-    # A back face is often deep inside: it keeps a light of its own, or the warning would be black.
-    diffuse = np.where(back & (tint is not None), np.maximum(diffuse, 0.45), diffuse)
-    sheen = balance.sheen * key * np.maximum((normals * half).sum(axis=1), 0) ** 24
-    return albedo * diffuse[:, None] + sheen[:, None]
-
-
-def _wired(shaded: FloatArray, samples: Samples, F: IntArray, s: int, tone: Theme) -> FloatArray:
-    P = samples.projected[F[samples.face], :2]
-    edge = np.roll(P, -1, axis=1) - np.roll(P, 1, axis=1)
-    area = np.abs(edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0])
-    length = np.maximum(np.linalg.norm(edge, axis=2), 1e-9)
-    distance = (samples.screen_weights * area[:, None] / length).min(axis=1) / s
-    cover = 0.7 * np.clip(0.9 - distance, 0.0, 1.0)[:, None]
-    return shaded + cover * (to_linear(rgb(tone.wire)) - shaded)
-
-
-def _composed(
-    samples: Samples,
-    shaded: FloatArray,
+def _background(
     V: FloatArray,
     camera: Camera,
+    size: tuple[int, int],
     lights: Lights | None,
     ground: float | None,
     tone: Theme,
+    work: Quality,
 ) -> tuple[FloatArray, FloatArray]:
-    width, height = samples.size
-    behind = np.tile(to_linear(rgb(tone.view)), (width * height, 1))
-    floor_depth = np.full(width * height, np.inf)
-    if ground is not None:
-        low, high = (V.min(axis=0), V.max(axis=0)) if len(V) else (np.full(3, -1.0), np.full(3, 1.0))
-        extent = max(float(np.linalg.norm(high - low)), 1e-6)
-        behind, floor_depth = floor_picture(
-            camera, samples.size, float(ground), lights, tone, (low + high) / 2, extent
-        )
-    # What has sunk into the floor stays visible, but faint.
-    sunk = samples.depth > floor_depth[samples.pixel] + 1e-3 * np.abs(samples.depth)
-    shaded = np.where(sunk[:, None], 0.4 * shaded + 0.6 * behind[samples.pixel], shaded)
-    covered = np.bincount(samples.pixel, minlength=width * height)
-    total = np.stack(
-        [np.bincount(samples.pixel, shaded[:, c], minlength=width * height) for c in range(3)], axis=1
-    )
-    empty = 1 - covered[:, None] / samples.per_pixel
-    depth = np.full(width * height, np.inf)
-    np.minimum.at(depth, samples.pixel, samples.depth)
-    picture = total / samples.per_pixel + empty * behind
-    return picture.reshape(height, width, 3), depth.reshape(height, width)
+    count = size[0] * size[1]
+    if ground is None:
+        return np.tile(to_linear(rgb(tone.view)), (count, 1)), np.full(count, np.inf)
+    if not np.isfinite(ground):
+        raise ValueError(f"ground must be a height in metres or None, got {ground}")
+    box = np.stack([V.min(axis=0), V.max(axis=0)]) if len(V) else np.array([[-1.0] * 3, [1.0] * 3])
+    return floor_picture(camera, size, float(ground), lights, tone, box, stride=1 if work.samples > 2 else 2)
 
 
 def _overlaid(
     picture: FloatArray,
     depth: FloatArray,
     camera: Camera,
-    size: tuple[int, int],
     ends: Any,
     colors: Any,
     width: float,
@@ -272,8 +186,8 @@ def _overlaid(
     if E.ndim != 3 or E.shape[1:] != (2, 3):
         shape = "(k, 2, 3)" if name == "lines" else "(p, 3)"
         raise ValueError(f"{name} must have shape {shape}, got {np.shape(ends)}")
-    known = np.isfinite(E).all(axis=(1, 2))
-    P = camera.project(np.where(known[:, None, None], E, 0.0).reshape(-1, 3), size).reshape(-1, 2, 3)
-    P[~known] = np.nan
+    size = (depth.shape[1], depth.shape[0])
+    P = camera.project(np.where(np.isfinite(E), E, 0.0).reshape(-1, 3), size).reshape(-1, 2, 3)
+    P[~np.isfinite(E).all(axis=(1, 2))] = np.nan
     ink = to_linear(as_colors(default if colors is None else colors, f"{name[:-1]}_colors", len(E)))
     draw_segments(picture, depth, P, ink, width / 2)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose._validate import read_only
-from tempose.render.raster import fill
+from tempose.render.raster import fill, snapped
 from tempose.typing import FloatArray, IntArray
 
 KEY, SKY, BOUNCE = 0, 1, 2
@@ -27,15 +27,15 @@ class Quality:
     key: int
     """Directions in the cone of the key light."""
     sky: int
-    """Directions of the sky; half as many come from below."""
+    """Directions of the sky; a third as many come from below."""
     resolution: int
     """Pixels of a depth map along each axis."""
 
 
 QUALITIES = {
-    "draft": Quality(samples=1, key=1, sky=16, resolution=160),
-    "good": Quality(samples=2, key=12, sky=48, resolution=288),
-    "best": Quality(samples=3, key=32, sky=128, resolution=448),
+    "draft": Quality(samples=1, key=2, sky=15, resolution=144),
+    "good": Quality(samples=2, key=12, sky=42, resolution=256),
+    "best": Quality(samples=3, key=32, sky=120, resolution=448),
 }
 
 
@@ -103,7 +103,7 @@ def light_directions(key: FloatArray, quality: Quality) -> tuple[FloatArray, Flo
     """
     cone = _cone(key, quality.key, half_angle=np.radians(7.0))
     sky = _half_sphere(quality.sky)
-    below = _half_sphere(quality.sky // 2) * [1.0, -1.0, 1.0]
+    below = _half_sphere(quality.sky // 3) * [1.0, -1.0, 1.0]
     weights = [
         np.full(len(cone), 1.0 / len(cone)),
         np.full(len(sky), 1.0 / sky[:, 1].sum()),
@@ -136,29 +136,30 @@ def make_lights(V: FloatArray, F: IntArray, key: FloatArray, quality: Quality) -
     R = quality.resolution
     maps = np.full((len(directions), R, R), -np.inf, dtype=np.float32)
     frames = np.zeros((len(directions), 2, 4))
-    used = V[np.unique(F)] if len(F) else np.zeros((1, 3))
+    Q = np.ascontiguousarray(V[np.unique(F)].T if len(F) else np.zeros((3, 1)))
+    F = np.searchsorted(np.unique(F), F).astype(np.int32)
     texel, no_faces = 0.0, np.zeros((0, 0), dtype=np.int32)
     for k, d in enumerate(directions):
-        frames[k], widest = _map_frame(used, d, R)
-        texel = max(texel, widest)
-        P = np.column_stack([V @ frames[k, :, :3].T + frames[k, :, 3], V @ d])
-        fill(P, F, no_faces, maps[k])
+        u, v = _plane_axes(d)
+        for axis, a in enumerate((u, v)):
+            x = a @ Q
+            # Two pixels of border: a look-up beyond the map is in the light.
+            scale = (R - 4) / max(float(x.max() - x.min()), 1e-9)
+            frames[k, axis] = [*(a * scale), 2.0 - float(x.min()) * scale]
+            texel = max(texel, 1 / scale)
+        on_map = frames[k, :, :3] @ Q + frames[k, :, 3:]
+        fill(snapped(on_map[0]), snapped(on_map[1]), d @ Q, F, no_faces, maps[k])
     return Lights(
         *(read_only(array) for array in (directions, weights, kind, frames, maps)),
         texel=texel,
     )
 
 
-def _map_frame(points: FloatArray, d: FloatArray, R: int) -> tuple[FloatArray, float]:
-    # Fit the map tightly along each axis, two pixels of border: a look-up beyond it is in the light.
+def _plane_axes(d: FloatArray) -> tuple[FloatArray, FloatArray]:
     up = np.array([0.0, 1.0, 0.0]) if abs(d[1]) < 0.99 else np.array([0.0, 0.0, 1.0])
     u = np.cross(up, d)
     u /= np.linalg.norm(u)
-    axes = np.stack([u, np.cross(d, u)])
-    Q = points @ axes.T
-    low, extent = Q.min(axis=0), np.maximum(np.ptp(Q, axis=0), 1e-9)
-    scale = (R - 4) / extent
-    return np.column_stack([axes * scale[:, None], 2.0 - low * scale]), float((1 / scale).max())
+    return u, np.cross(d, u)
 
 
 def _half_sphere(count: int) -> FloatArray:

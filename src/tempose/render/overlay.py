@@ -1,5 +1,6 @@
 """Segments and points over a picture: bones, markers, marks; fainter where the surface hides them."""
 
+# pyright: reportMissingParameterType=false
 from __future__ import annotations
 
 import numpy as np
@@ -42,7 +43,7 @@ def draw_segments(
 
 
 @njit(cache=True, nogil=True)
-def _draw(picture, depth, a, b, color, radius, hidden):  # type: ignore[no-untyped-def]
+def _draw(picture, depth, a, b, color, radius, hidden):
     height, width = depth.shape
     x0 = max(int(min(a[0], b[0]) - radius - 1), 0)
     x1 = min(int(max(a[0], b[0]) + radius + 2), width)

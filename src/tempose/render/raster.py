@@ -14,6 +14,8 @@ from tempose.typing import FloatArray, IntArray
 SUBPIXELS = 256
 """Positions per pixel along each axis."""
 
+_OUTSIDE = 1 << 30  # Farther out, in subpixels, the integers of the edge functions could overflow.
+
 
 def rasterise(P: FloatArray, F: IntArray, width: int, height: int) -> tuple[IntArray, FloatArray]:
     """Find the nearest triangle at every pixel centre.
@@ -22,7 +24,8 @@ def rasterise(P: FloatArray, F: IntArray, width: int, height: int) -> tuple[IntA
     ----------
     P : (n, 3) float
         x to the right and y downwards in pixels, and nearness: larger is nearer, and linear on the screen
-        (one over depth for perspective, minus depth for parallel projection). NaN hides a vertex's faces.
+        (one over depth for perspective, minus depth for parallel projection). NaN hides a vertex's faces,
+        and so does a place more than four million pixels away.
     F : (m, 3) int
         Triangles.
     width, height : int
@@ -37,18 +40,40 @@ def rasterise(P: FloatArray, F: IntArray, width: int, height: int) -> tuple[IntA
     """
     face = np.full((height, width), -1, dtype=np.int32)
     nearness = np.full((height, width), -np.inf, dtype=np.float32)
-    fill(np.ascontiguousarray(P, dtype=np.float64), F, face, nearness)
+    Q = np.ascontiguousarray(np.asarray(P, dtype=np.float64).T)
+    fill(snapped(Q[0]), snapped(Q[1]), Q[2], np.ascontiguousarray(F, dtype=np.int32), face, nearness)
     return face, nearness
 
 
+def snapped(x: FloatArray) -> IntArray:
+    """Round pixels to subpixels.
+
+    Parameters
+    ----------
+    x : (n,) float
+        Pixels.
+
+    Returns
+    -------
+    (n,) ndarray of int64
+        Subpixels; what is no number or too far away gets the largest magnitude, which `fill` leaves out.
+    """
+    y = np.floor(x * SUBPIXELS + 0.5)
+    return np.where(np.abs(y) < _OUTSIDE, y, _OUTSIDE).astype(np.int64)
+
+
 @njit(cache=True, nogil=True)
-def fill(P: FloatArray, F: IntArray, face: IntArray, nearness: FloatArray) -> None:  # pragma: no cover
+def fill(
+    X: IntArray, Y: IntArray, near: FloatArray, F: IntArray, face: IntArray, nearness: FloatArray
+) -> None:
     """Draw triangles into a z-buffer.
 
     Parameters
     ----------
-    P : (n, 3) float64
-        As in `rasterise`.
+    X, Y : (n,) int64
+        Places of the vertices, in subpixels.
+    near : (n,) float64
+        Their nearness, as in `rasterise`.
     F : (m, 3) int32
         Triangles.
     face : (height, width) int32
@@ -57,63 +82,40 @@ def fill(P: FloatArray, F: IntArray, face: IntArray, nearness: FloatArray) -> No
         Read and written.
     """
     height, width = nearness.shape
-    limit = 1e6  # beyond it the integers of the edge functions could overflow
     for f in range(F.shape[0]):
         a, b, c = F[f, 0], F[f, 1], F[f, 2]
-        xa, ya, xb, yb, xc, yc = P[a, 0], P[a, 1], P[b, 0], P[b, 1], P[c, 0], P[c, 1]
-        low_x, high_x = min(xa, xb, xc), max(xa, xb, xc)
-        low_y, high_y = min(ya, yb, yc), max(ya, yb, yc)
-        # Written so that NaN fails it too.
-        inside = high_x > 0.0 and low_x < width and high_y > 0.0 and low_y < height
-        if not (inside and low_x > -limit and high_x < limit and low_y > -limit and high_y < limit):
+        xa, ya, xb, yb, xc, yc = X[a], Y[a], X[b], Y[b], X[c], Y[c]
+        # Bounds in pixels whose centres can lie inside; many triangles of a fine mesh have none.
+        i0, i1 = max((min(xa, xb, xc) + 127) >> 8, 0), min((max(xa, xb, xc) + 128) >> 8, width)
+        if i0 >= i1:
             continue
-        box = (
-            max(int(np.floor(low_x - 0.5)), 0),
-            min(int(np.ceil(high_x + 0.5)), width),
-            max(int(np.floor(low_y - 0.5)), 0),
-            min(int(np.ceil(high_y + 0.5)), height),
-        )
-        if _area(xa, ya, xb, yb, xc, yc) < 0:
-            xb, yb, xc, yc, b, c = xc, yc, xb, yb, c, b
-        corners = (_snap(xa), _snap(ya), _snap(xb), _snap(yb), _snap(xc), _snap(yc))
-        _fill_triangle(corners, (P[a, 2], P[b, 2], P[c, 2]), box, f, face, nearness)
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _snap(x):  # type: ignore[no-untyped-def]
-    return np.int64(np.floor(x * 256.0 + 0.5))
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _area(xa, ya, xb, yb, xc, yc):  # type: ignore[no-untyped-def]
-    ax, ay = _snap(xa), _snap(ya)
-    return (_snap(xb) - ax) * (_snap(yc) - ay) - (_snap(yb) - ay) * (_snap(xc) - ax)
-
-
-@njit(cache=True, nogil=True)
-def _fill_triangle(corners, near, box, f, face, nearness):  # type: ignore[no-untyped-def]
-    xa, ya, xb, yb, xc, yc = corners
-    area = (xb - xa) * (yc - ya) - (yb - ya) * (xc - xa)
-    if area == 0:
-        return
-    # An edge owns its own points when it goes down, or right: its twin in the neighbour goes the other way.
-    own_a = 0 if yc - yb > 0 or (yc == yb and xc > xb) else 1
-    own_b = 0 if ya - yc > 0 or (ya == yc and xa > xc) else 1
-    own_c = 0 if yb - ya > 0 or (yb == ya and xb > xa) else 1
-    x0 = np.int64(box[0]) * 256 + 128
-    write_face = face.shape[0] > 0
-    for j in range(box[2], box[3]):
-        y = np.int64(j) * 256 + 128
-        ea = (xc - xb) * (y - yb) - (yc - yb) * (x0 - xb)
-        eb = (xa - xc) * (y - yc) - (ya - yc) * (x0 - xc)
-        ec = (xb - xa) * (y - ya) - (yb - ya) * (x0 - xa)
-        for i in range(box[0], box[1]):
-            if ea >= own_a and eb >= own_b and ec >= own_c:
-                w = np.float32((ea * near[0] + eb * near[1] + ec * near[2]) / area)
-                if w > nearness[j, i]:
-                    nearness[j, i] = w
-                    if write_face:
-                        face[j, i] = f
-            ea -= (yc - yb) * 256
-            eb -= (ya - yc) * 256
-            ec -= (yb - ya) * 256
+        j0, j1 = max((min(ya, yb, yc) + 127) >> 8, 0), min((max(ya, yb, yc) + 128) >> 8, height)
+        area = (xb - xa) * (yc - ya) - (yb - ya) * (xc - xa)
+        if j0 >= j1 or area == 0 or max(xa, xb, xc, ya, yb, yc) >= _OUTSIDE:
+            continue
+        za, zb, zc = near[a], near[b], near[c]
+        if area < 0:
+            xb, yb, zb, xc, yc, zc, area = xc, yc, zc, xb, yb, zb, -area
+        # Edge functions and their steps. An edge owns its own points when it goes down, or right: its twin
+        # in the neighbour goes the other way.
+        ax, ay, bx, by, cx, cy = xc - xb, yc - yb, xa - xc, ya - yc, xb - xa, yb - ya
+        own_a = 0 if ay > 0 or (ay == 0 and ax > 0) else 1
+        own_b = 0 if by > 0 or (by == 0 and bx > 0) else 1
+        own_c = 0 if cy > 0 or (cy == 0 and cx > 0) else 1
+        wa, wb, wc = za / area, zb / area, zc / area
+        x = (i0 << 8) + 128
+        for j in range(j0, j1):
+            y = (j << 8) + 128
+            ea = ax * (y - yb) - ay * (x - xb) - own_a
+            eb = bx * (y - yc) - by * (x - xc) - own_b
+            ec = cx * (y - ya) - cy * (x - xa) - own_c
+            for i in range(i0, i1):
+                if (ea | eb | ec) >= 0:
+                    w = np.float32((ea + own_a) * wa + (eb + own_b) * wb + (ec + own_c) * wc)
+                    if w > nearness[j, i]:
+                        nearness[j, i] = w
+                        if face.shape[0] > 0:
+                            face[j, i] = f
+                ea -= ay << 8
+                eb -= by << 8
+                ec -= cy << 8

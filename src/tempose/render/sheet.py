@@ -10,13 +10,14 @@ import numpy as np
 from tempose.clips import Mesh, MeshClip
 from tempose.render.camera import Camera
 from tempose.render.colors import Picture, ramp_colors
-from tempose.render.follow import as_clip, clip_cameras, floor_level, frame_choice, good_aspect
+from tempose.render.follow import clip_cameras, good_aspect
 from tempose.render.frame import render_frame
-from tempose.render.text import draw_text, text_size
-from tempose.render.themes import Theme, rgb, theme_named
+from tempose.render.layout import Legend, Row, lay_out
+from tempose.render.subject import as_clip, floor_level, frame_choice
+from tempose.render.themes import Theme, theme_named
+from tempose.render.views import view_label
+from tempose.render.workers import in_order
 from tempose.typing import Progress, silent
-
-PAD, CAPTION, TITLE = 10, 13, 17
 
 
 def contact_sheet(
@@ -38,6 +39,7 @@ def contact_sheet(
     ramp: str = "heat",
     segments: Any = None,
     points: Any = None,
+    workers: int | None = None,
     progress: Progress = silent,
     **look: Any,
 ) -> Picture:
@@ -79,6 +81,8 @@ def contact_sheet(
         Bones drawn over the frames, metres.
     points : (T, p, 3) array_like, or a sequence of these and None per clip, optional
         Markers drawn over the frames, metres.
+    workers : int, optional
+        Cells rendered at a time; None for one per core, at most four.
     progress : Progress, default silent
         Called after each cell.
     **look
@@ -95,46 +99,62 @@ def contact_sheet(
         If a frame or a view does not exist or an array has another shape.
     """
     several = not isinstance(clips, (Mesh, MeshClip))
-    shown = [as_clip(c) for c in clips] if not isinstance(clips, (Mesh, MeshClip)) else [as_clip(clips)]
+    shown = [as_clip(c) for c in ([clips] if isinstance(clips, (Mesh, MeshClip)) else clips)]
     tone = theme_named(theme)
     chosen = [frame_choice(frames, clip.n_frames) for clip in shown]
     values = _per_clip(scalars, shown, several, "scalars", 2)
-    span = _span(values, scalar_range)
-    bones, marks = (
-        _per_clip(segments, shown, several, "segments", 4),
-        _per_clip(points, shown, several, "points", 3),
-    )
-    if isinstance(cell, int):
-        aspect = max(good_aspect(c, v, 0.45, 1.9) for c in shown for v in views)
-        size = (int(round(cell * aspect)), cell)
-    else:
-        size = (int(cell[0]), int(cell[1]))
-    rows: list[list[Picture]] = []
-    total = len(views) * sum(len(c) for c in chosen)
-    for c, clip in enumerate(shown):
-        level = floor_level(clip, ground)
-        for v, view in enumerate(views):
-            up = elevation if view != "top" and not isinstance(view, tuple) else None
-            path = clip_cameras(clip, view, aspect=size[0] / size[1], track=track, elevation=up, roam=0.2)
-            row: list[Picture] = []
-            for t in chosen[c]:
-                camera = path[t] if cameras is None else cameras(c, v, t)
-                options = dict(look)
-                if values[c] is not None and span is not None:
-                    options["colors"] = ramp_colors(values[c][t], *span, ramp)
-                for key, array in (("lines", bones[c]), ("points", marks[c])):
-                    if array is not None:
-                        options[key] = array[t]
-                row.append(
-                    render_frame(
-                        clip.vertices[t], clip.faces, camera, size=size, theme=tone, ground=level, **options
-                    )
-                )
-                progress(sum(len(r) for r in rows) + len(row), total, "rendering")
-            rows.append(row)
-    captions = [[f"{t}   {t / clip.fps:.2f} s" for t in chosen[c]] for c, clip in enumerate(shown)]
-    labels = names if names is not None else [clip.name for clip in shown]
-    return _assembled(rows, captions, labels, views, title, tone, (span, scalar_label, ramp))
+    span = _span(values, chosen, scalar_range)
+    bones = _per_clip(segments, shown, several, "segments", 4)
+    marks = _per_clip(points, shown, several, "points", 3)
+    size = _cell_size(cell, shown, views)
+    floors = [floor_level(clip, ground) for clip in shown]
+    paths = {
+        (c, v): clip_cameras(
+            clip,
+            view,
+            aspect=size[0] / size[1],
+            track=track,
+            elevation=None if view == "top" or isinstance(view, tuple) else elevation,
+            roam=0.2,
+        )
+        for c, clip in enumerate(shown)
+        for v, view in enumerate(views)
+    }
+
+    def picture(at: tuple[int, int, int]) -> Picture:
+        c, v, t = at
+        options = dict(look)
+        if values[c] is not None and span is not None:
+            options["colors"] = ramp_colors(values[c][t], *span, ramp)
+        for key, array in (("lines", bones[c]), ("points", marks[c])):
+            if array is not None:
+                options[key] = array[t]
+        camera = paths[c, v][t] if cameras is None else cameras(c, v, t)
+        V, F = shown[c].vertices[t], shown[c].faces
+        return render_frame(V, F, camera, size=size, theme=tone, ground=floors[c], **options)
+
+    cells = [(c, v, t) for c in range(len(shown)) for v in range(len(views)) for t in chosen[c]]
+    pictures: dict[tuple[int, int, int], Picture] = {}
+    for at, done in zip(cells, in_order(picture, cells, workers)):
+        pictures[at] = done
+        progress(len(pictures), len(cells), "rendering")
+    rows = [
+        Row(
+            [pictures[c, v, t] for t in chosen[c]],
+            [f"{t}   {t / clip.fps:.2f} s" for t in chosen[c]],
+            " · ".join(w for w in ((names or [k.name for k in shown])[c], view_label(view)) if w),
+        )
+        for c, clip in enumerate(shown)
+        for v, view in enumerate(views)
+    ]
+    return lay_out(rows, title, tone, None if span is None else Legend(*span, scalar_label, ramp))
+
+
+def _cell_size(cell: int | tuple[int, int], clips: list[MeshClip], views: Sequence[Any]) -> tuple[int, int]:
+    if not isinstance(cell, (int, np.integer)):
+        return int(cell[0]), int(cell[1])
+    aspect = max(good_aspect(clip, view, 0.5, 1.8) for clip in clips for view in views)
+    return int(round(cell * aspect)), int(cell)
 
 
 def _per_clip(value: Any, clips: list[MeshClip], several: bool, name: str, ndim: int) -> list[Any]:
@@ -159,63 +179,13 @@ def _per_clip(value: Any, clips: list[MeshClip], several: bool, name: str, ndim:
     return out
 
 
-def _span(values: list[Any], given: tuple[float, float] | None) -> tuple[float, float] | None:
-    known = [v for v in values if v is not None]
-    if not known:
+def _span(
+    values: list[Any], chosen: list[list[int]], given: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    shown = [v[t] for v, frames in zip(values, chosen) if v is not None for t in frames]
+    if not shown:
         return None
     if given is not None:
         return float(given[0]), float(given[1])
-    low, high = min(float(np.nanmin(v)) for v in known), max(float(np.nanmax(v)) for v in known)
+    low, high = min(float(np.nanmin(v)) for v in shown), max(float(np.nanmax(v)) for v in shown)
     return low, high if high > low else low + 1.0
-
-
-def _assembled(
-    rows: list[list[Picture]],
-    captions: list[list[str]],
-    labels: Sequence[str],
-    views: Sequence[Any],
-    title: str,
-    tone: Theme,
-    legend: tuple[tuple[float, float] | None, str, str],
-) -> Picture:
-    height, width = rows[0][0].shape[:2]
-    columns = max(len(row) for row in rows)
-    strip = CAPTION + 8
-    top = PAD + (TITLE + 10 if title or legend[0] else 0)
-    sheet = np.zeros(
-        (top + len(rows) * (height + strip + 4) + PAD, 2 * PAD + columns * (width + 4) - 4, 3), np.uint8
-    )
-    sheet[:] = np.round(rgb(tone.panel) * 255).astype(np.uint8)
-    if title:
-        draw_text(sheet, title, (PAD, PAD), TITLE, rgb(tone.text))
-    if legend[0] is not None:
-        _draw_legend(sheet, legend[0], legend[1], legend[2], tone)
-    for r, row in enumerate(rows):
-        y = top + r * (height + strip + 4)
-        clip, view = divmod(r, len(views))
-        for c, picture in enumerate(row):
-            x = PAD + c * (width + 4)
-            sheet[y : y + height, x : x + width] = picture
-            draw_text(sheet, captions[clip][c], (x + 2, y + height + 3), CAPTION, rgb(tone.text_2))
-        words = [w for w in (labels[clip], _view_name(views[view])) if w]
-        draw_text(sheet, " · ".join(words), (PAD + 8, y + 6), CAPTION, rgb(tone.text_3))
-    return sheet
-
-
-def _view_name(view: Any) -> str:
-    if isinstance(view, str):
-        return view
-    azimuth = view[0] if isinstance(view, tuple) else view
-    return f"{np.degrees(azimuth):.0f}°"
-
-
-def _draw_legend(sheet: Picture, span: tuple[float, float], label: str, ramp: str, tone: Theme) -> None:
-    width = 140
-    right = sheet.shape[1] - PAD
-    high, low = f"{span[1]:.3g}", f"{span[0]:.3g}"
-    x1 = right - text_size(high, CAPTION)[0] - 6
-    x0 = x1 - width
-    bar = ramp_colors(np.linspace(0, 1, width), 0, 1, ramp)
-    sheet[PAD + 4 : PAD + 14, x0:x1] = np.round(bar * 255).astype(np.uint8)[None]
-    draw_text(sheet, high, (right, PAD + 9), CAPTION, rgb(tone.text_2), anchor="rm")
-    draw_text(sheet, f"{label}  {low}".strip(), (x0 - 6, PAD + 9), CAPTION, rgb(tone.text_2), anchor="rm")

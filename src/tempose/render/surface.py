@@ -1,45 +1,56 @@
-"""What is seen of a mesh: position, normal and colour at every covered sample, and the light there."""
+"""What is seen of a mesh: position, normal and weights at every covered sample, and the light there."""
 
+# pyright: reportMissingParameterType=false
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
 from tempose.render.camera import Camera
-from tempose.render.gather import gather_at, light_arrays
-from tempose.render.lights import Lights
 from tempose.render.raster import rasterise
 from tempose.typing import BoolArray, FloatArray, IntArray
+
+_BAND = 400_000  # Samples shaded at a time: bounds the memory of large pictures.
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Samples of the picture that a triangle covers, s * s per pixel, in the order of their pixels."""
+    """Samples of a picture that a triangle covers, in the order of their pixels."""
 
-    size: tuple[int, int]
-    """Width and height of the picture, pixels."""
-    per_pixel: int
-    """Samples per pixel, s * s."""
     pixel: IntArray
-    """(k,) pixel of each sample, row times width plus column."""
+    """(k,) int64 pixel of each sample, row times width plus column."""
     face: IntArray
-    """(k,) triangle of each sample."""
+    """(k,) int32 triangle of each sample."""
     weights: FloatArray
     """(k, 3) float64 barycentric coordinates in the world."""
-    screen_weights: FloatArray
-    """(k, 3) float64 barycentric coordinates on the screen."""
+    edge: FloatArray
+    """(k,) float64 distance to the nearest edge of the triangle, pixels."""
     position: FloatArray
     """(k, 3) float64, metres."""
+    smooth_position: FloatArray
+    """(k, 3) float64, metres: moved out to the smooth surface that the normals pretend [1]_.
+
+    Without it a coarse mesh throws the shadow of its flat faces onto itself along the terminator.
+
+    .. [1] Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
+    """
+    normal: FloatArray
+    """(k, 3) float64 unit normal of the side that is seen, interpolated."""
+    view: FloatArray
+    """(k, 3) float64 unit vector towards the eye."""
+    back: BoolArray
+    """(k,) whether the back of the triangle is seen."""
     depth: FloatArray
     """(k,) float64 metres before the eye."""
-    projected: FloatArray
-    """(n, 3) vertices in the picture of s times the size: x, y and nearness."""
 
 
-def trace(V: FloatArray, F: IntArray, camera: Camera, size: tuple[int, int], s: int) -> Samples:
-    """Find what every sample of a picture sees.
+def trace(
+    V: FloatArray, F: IntArray, N: FloatArray, camera: Camera, size: tuple[int, int], s: int
+) -> Iterator[Samples]:
+    """Find what the samples of a picture see, band by band from the top.
 
     Parameters
     ----------
@@ -47,6 +58,8 @@ def trace(V: FloatArray, F: IntArray, camera: Camera, size: tuple[int, int], s: 
         Vertices, metres.
     F : (m, 3) int
         Triangles; those that reach behind the eye are left out.
+    N : (m, 3, 3) float
+        Corner normals.
     camera : Camera
         Point of view.
     size : (int, int)
@@ -54,154 +67,142 @@ def trace(V: FloatArray, F: IntArray, camera: Camera, size: tuple[int, int], s: 
     s : int
         Samples per pixel along each axis.
 
-    Returns
-    -------
+    Yields
+    ------
     Samples
-        The covered samples.
+        The covered samples of some rows.
     """
     width, height = size
-    P = camera.project(V, (width * s, height * s))
-    parallel = camera.fov == 0
-    near = 1e-4 * max(float(np.abs(P[:, 2]).max(initial=0.0)), 1e-9)
-    with np.errstate(divide="ignore"):
-        nearness = -P[:, 2] if parallel else np.where(P[:, 2] > near, 1.0 / P[:, 2], np.nan)
-    P[~np.isfinite(nearness)] = np.nan
-    P[:, 2] = nearness
+    P = screen(V, camera, (width * s, height * s))
     face, _ = rasterise(P, F, width * s, height * s)
-    by_pixel = face.reshape(height, s, width, s).transpose(0, 2, 1, 3).reshape(-1)
-    covered = np.flatnonzero(by_pixel >= 0)
-    pixel, sub = covered // (s * s), covered % (s * s)
-    x = (pixel % width) * s + sub % s + 0.5
-    y = (pixel // width) * s + sub // s + 0.5
-    hit = by_pixel[covered]
-    on_screen = _barycentric(P[F[hit], :2], x, y)
-    scaled = on_screen if parallel else on_screen * P[F[hit], 2]
-    weights = scaled / scaled.sum(axis=1, keepdims=True)
-    position = np.einsum("kc,kcd->kd", weights, V[F[hit]])
-    depth = (camera.position - position) @ camera.axes[2]
-    return Samples(size, s * s, pixel, hit, weights, on_screen, position, depth, P)
+    rows = max(_BAND // (width * s * s), 1)
+    parallel = camera.fov == 0
+    eye = camera.axes[2] if parallel else camera.position
+    for top in range(0, height, rows):
+        band = face[top * s : (top + rows) * s]
+        k = int(np.count_nonzero(band >= 0))
+        if k == 0:
+            continue
+        out = Samples(
+            np.zeros(k, np.int64),
+            np.zeros(k, np.int32),
+            *(np.zeros((k, 3)), np.zeros(k), np.zeros((k, 3)), np.zeros((k, 3)), np.zeros((k, 3))),
+            *(np.zeros((k, 3)), np.zeros(k, np.bool_), np.zeros(k)),
+        )
+        _interpolate(
+            band, top, s, P, V, F, N, parallel, eye, out.pixel, out.face, out.weights, out.edge,
+            out.position, out.smooth_position, out.normal, out.view, out.back,
+        )  # fmt: skip
+        out.depth[:] = (camera.position - out.position) @ camera.axes[2]
+        yield out
 
 
-def _barycentric(corners: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
-    # Corners are snapped to 1/256 pixel when drawn: clip what this leaves outside the triangle.
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    area = np.where(area == 0, 1.0, area)
-    wb = ((x - a[:, 0]) * (c[:, 1] - a[:, 1]) - (y - a[:, 1]) * (c[:, 0] - a[:, 0])) / area
-    wc = ((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (b[:, 1] - a[:, 1]) * (x - a[:, 0])) / area
-    W = np.clip(np.stack([1 - wb - wc, wb, wc], axis=1), 0.0, 1.0)
-    return W / W.sum(axis=1, keepdims=True)
-
-
-def oriented_normals(
-    samples: Samples, V: FloatArray, F: IntArray, N: FloatArray, camera: Camera
-) -> tuple[FloatArray, BoolArray]:
-    """Return the normals of the side that is seen.
+def screen(V: FloatArray, camera: Camera, size: tuple[int, int]) -> FloatArray:
+    """Project vertices for `tempose.render.raster.rasterise`.
 
     Parameters
     ----------
-    samples : Samples
-        Where.
     V : (n, 3) float
-        Vertices.
-    F : (m, 3) int
-        Triangles.
-    N : (m, 3, 3) float
-        Corner normals.
+        Vertices, metres.
     camera : Camera
         Point of view.
+    size : (int, int)
+        Width and height, pixels.
 
     Returns
     -------
-    normals : (k, 3) ndarray of float64
-        Unit, interpolated.
-    back : (k,) ndarray of bool
-        Whether the back of the triangle is seen.
+    (n, 3) ndarray of float64
+        x, y in pixels and nearness; NaN behind the eye.
     """
-    T = V[F[samples.face]]
-    flat = np.cross(T[:, 1] - T[:, 0], T[:, 2] - T[:, 0])
-    view = camera.position - samples.position if camera.fov else camera.axes[2]
-    back = (flat * view).sum(axis=1) < 0
-    n = np.einsum("kc,kcd->kd", samples.weights, N[samples.face])
-    length = np.linalg.norm(n, axis=1, keepdims=True)
-    n = np.where(length > 1e-12, n / np.maximum(length, 1e-12), camera.axes[2])
-    return np.where(back[:, None], -n, n), back
-
-
-def bulged(samples: Samples, V: FloatArray, F: IntArray, N: FloatArray, normals: FloatArray) -> FloatArray:
-    """Move sample positions out to the smooth surface that the normals pretend.
-
-    Without it a coarse mesh throws the shadow of its flat faces onto itself along the terminator.
-
-    Parameters
-    ----------
-    samples : Samples
-        Where.
-    V : (n, 3) float
-        Vertices.
-    F : (m, 3) int
-        Triangles.
-    N : (m, 3, 3) float
-        Corner normals.
-    normals : (k, 3) float
-        Normals of the side that is seen.
-
-    Returns
-    -------
-    (k, 3) ndarray of float64
-        Positions, metres.
-
-    References
-    ----------
-    .. [1] Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
-    """
-    corner, n = V[F[samples.face]], N[samples.face]
-    n = n * np.sign(np.einsum("kcd,kd->kc", n, normals))[:, :, None]
-    below = np.minimum(np.einsum("kcd,kcd->kc", samples.position[:, None] - corner, n), 0.0)
-    return samples.position - np.einsum("kc,kc,kcd->kd", samples.weights, below, n)
-
-
-def light_samples(samples: Samples, position: FloatArray, normals: FloatArray, lights: Lights) -> FloatArray:
-    """Return the light at every sample; samples of one pixel on one surface share it.
-
-    Parameters
-    ----------
-    samples : Samples
-        Where.
-    position : (k, 3) float
-        Points to start from, metres.
-    normals : (k, 3) float
-        Unit normals of the side that is seen.
-    lights : Lights
-        Light and what is in its way.
-
-    Returns
-    -------
-    (k, 3) ndarray of float64
-        As `tempose.render.gather.gather`.
-    """
-    light = np.zeros((len(position), 3))
-    _light_samples(samples.pixel, samples.depth, position, normals, light, *light_arrays(lights))
-    return light
+    P = camera.project(V, size)
+    if camera.fov == 0:
+        P[:, 2] *= -1
+        return P
+    near = 1e-4 * float(np.abs(P[:, 2]).max(initial=1e-9))
+    ahead = P[:, 2] > near
+    P[:, 2] = 1.0 / np.where(ahead, P[:, 2], 1.0)
+    P[~ahead] = np.nan
+    return P
 
 
 @njit(cache=True, nogil=True)
-def _light_samples(pixel, depth, points, normals, light, dirs, weights, kind, frames, maps, offset):  # type: ignore[no-untyped-def]
-    first = 0
-    for k in range(len(points)):
-        if k == 0 or pixel[k] != pixel[k - 1]:
-            first = k
-        n, found = normals[k], False
-        for j in range(first, k):
-            m = normals[j]
-            same = n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.97
-            if same and abs(depth[j] - depth[k]) < 0.004 * abs(depth[k]):
-                light[k] = light[j]
-                found = True
-                break
-        if not found:
-            p = points[k]
-            key, sky, bounce = gather_at(
-                p[0], p[1], p[2], n[0], n[1], n[2], dirs, weights, kind, frames, maps, offset
-            )
-            light[k, 0], light[k, 1], light[k, 2] = key, sky, bounce
+def _interpolate(
+    faces, top, s, P, V, F, N, parallel, eye, pixel, face, weights, edge, position, smooth, normal, view, back
+):
+    height, width = faces.shape[0] // s, faces.shape[1] // s
+    k = 0
+    for j in range(height):
+        for i in range(width):
+            for sub in range(s * s):
+                y, x = j * s + sub // s, i * s + sub % s
+                f = faces[y, x]
+                if f < 0:
+                    continue
+                pixel[k], face[k] = (top + j) * width + i, f
+                edge[k] = _weights(P, F, f, x + 0.5, top * s + y + 0.5, parallel, weights, k) / s
+                for c in range(3):
+                    for d in range(3):
+                        position[k, d] += weights[k, c] * V[F[f, c], d]
+                        normal[k, d] += weights[k, c] * N[f, c, d]
+                back[k] = _turn(V, F, f, parallel, eye, position, normal, view, k)
+                _bulge(V, F, f, N, weights, position, normal, smooth, k)
+                k += 1
+
+
+@njit(cache=True, nogil=True)
+def _weights(P, F, f, x, y, parallel, weights, k):
+    # Corners are snapped to 1/256 pixel when drawn: clip what this leaves outside the triangle.
+    a, b, c = F[f, 0], F[f, 1], F[f, 2]
+    ax, ay, bx, by, cx, cy = P[a, 0], P[a, 1], P[b, 0], P[b, 1], P[c, 0], P[c, 1]
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    scale = 1.0 / area if area != 0.0 else 0.0
+    wb = max(((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) * scale, 0.0)
+    wc = max(((bx - ax) * (y - ay) - (by - ay) * (x - ax)) * scale, 0.0)
+    wa = max(1.0 - wb - wc, 0.0)
+    edge = abs(area) * min(
+        wa / max(np.hypot(cx - bx, cy - by), 1e-9),
+        wb / max(np.hypot(ax - cx, ay - cy), 1e-9),
+        wc / max(np.hypot(bx - ax, by - ay), 1e-9),
+    )
+    if not parallel:
+        wa, wb, wc = wa * P[a, 2], wb * P[b, 2], wc * P[c, 2]
+    total = wa + wb + wc
+    weights[k, 0], weights[k, 1], weights[k, 2] = wa / total, wb / total, wc / total
+    return edge
+
+
+@njit(cache=True, nogil=True)
+def _turn(V, F, f, parallel, eye, position, normal, view, k):
+    # Turn the normal to the side that is seen; say whether that is the back.
+    a, b, c = F[f, 0], F[f, 1], F[f, 2]
+    ux, uy, uz = V[b, 0] - V[a, 0], V[b, 1] - V[a, 1], V[b, 2] - V[a, 2]
+    vx, vy, vz = V[c, 0] - V[a, 0], V[c, 1] - V[a, 1], V[c, 2] - V[a, 2]
+    length = normal_length = 0.0
+    for d in range(3):
+        view[k, d] = eye[d] if parallel else eye[d] - position[k, d]
+        length += view[k, d] ** 2
+        normal_length += normal[k, d] ** 2
+    length, normal_length = np.sqrt(length), np.sqrt(normal_length)
+    for d in range(3):
+        view[k, d] /= length
+    facing = (uy * vz - uz * vy) * view[k, 0] + (uz * vx - ux * vz) * view[k, 1]
+    facing += (ux * vy - uy * vx) * view[k, 2]
+    side = -1.0 if facing < 0.0 else 1.0
+    for d in range(3):
+        normal[k, d] = side * normal[k, d] / normal_length if normal_length > 1e-12 else view[k, d]
+    return facing < 0.0
+
+
+@njit(cache=True, nogil=True)
+def _bulge(V, F, f, N, weights, position, normal, smooth, k):
+    for d in range(3):
+        smooth[k, d] = position[k, d]
+    for c in range(3):
+        agrees = below = 0.0
+        for d in range(3):
+            agrees += N[f, c, d] * normal[k, d]
+            below += (position[k, d] - V[F[f, c], d]) * N[f, c, d]
+        side = 1.0 if agrees > 0.0 else -1.0
+        if side * below < 0.0:
+            for d in range(3):
+                smooth[k, d] -= weights[k, c] * below * N[f, c, d]

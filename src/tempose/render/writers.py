@@ -85,7 +85,7 @@ def save_gif(
         If there is no frame, or one has another size or type.
     """
     Image = pillow().Image
-    checked = list(_checked(frames, total, progress))
+    checked = list(checked_frames(frames, total, progress))
     delays = gif_delays(len(checked), fps)
     step = max(len(checked) // 12, 1)
     # A palette of its own for every frame makes still surfaces flicker.
@@ -128,66 +128,28 @@ def gif_delays(count: int, fps: float) -> list[int]:
     return [int(max(10 * d, 20)) for d in np.diff(ends)]
 
 
-def save_mp4(
-    frames: Iterable[Any],
-    path: str | os.PathLike[str],
-    fps: float = 30.0,
-    *,
-    crf: int = 18,
-    total: int = 0,
-    progress: Progress = silent,
-) -> None:
-    """Write pictures as H.264 that plays everywhere (yuv420p, even sizes: an odd edge is repeated).
+def checked_frames(frames: Iterable[Any], total: int, progress: Progress) -> Iterable[Picture]:
+    """Check pictures one by one as they come.
 
     Parameters
     ----------
     frames : iterable of (height, width, 3) uint8
-        sRGB pictures of one size; taken one by one, so that a long film needs little memory.
-    path : path-like
-        File to write or replace.
-    fps : float, default 30
-        Frames per second.
-    crf : int, default 18
-        Quality, 0 (lossless) to 51; smaller is better and larger.
-    total : int, default 0
-        Number of frames if known, for `progress`.
-    progress : Progress, default silent
-        Called after each frame.
+        sRGB pictures.
+    total : int
+        Number of frames, for `progress`.
+    progress : Progress
+        Called after each.
+
+    Yields
+    ------
+    (height, width, 3) ndarray of uint8
+        The pictures.
 
     Raises
     ------
     ValueError
-        If there is no frame, or one has another size or type.
+        If there is none, or one has another size or type.
     """
-    if not 0 < fps < float("inf"):
-        raise ValueError(f"fps must be positive, got {fps}")
-    ffmpeg = _ffmpeg()
-    with atomic_path(path) as part:
-        stream = None
-        try:
-            for picture in _checked(frames, total, progress):
-                even = np.pad(picture, [(0, s % 2) for s in picture.shape[:2]] + [(0, 0)], mode="edge")
-                if stream is None:
-                    stream = ffmpeg.write_frames(
-                        str(part),
-                        (even.shape[1], even.shape[0]),
-                        fps=fps,
-                        codec="libx264",
-                        pix_fmt_in="rgb24",
-                        pix_fmt_out="yuv420p",
-                        macro_block_size=2,
-                        quality=None,
-                        ffmpeg_log_level="error",
-                        output_params=["-crf", str(crf), "-movflags", "+faststart"],
-                    )
-                    stream.send(None)
-                stream.send(even.tobytes())
-        finally:
-            if stream is not None:
-                stream.close()
-
-
-def _checked(frames: Iterable[Any], total: int, progress: Progress) -> Iterable[Picture]:
     shape = None
     for t, frame in enumerate(frames):
         picture = as_picture(frame, f"frames[{t}]")
@@ -198,13 +160,3 @@ def _checked(frames: Iterable[Any], total: int, progress: Progress) -> Iterable[
         progress(t + 1, total, "rendering")
     if shape is None:
         raise ValueError("frames must hold at least one picture, got none")
-
-
-def _ffmpeg() -> Any:
-    try:
-        import imageio_ffmpeg
-    except ImportError:
-        raise ImportError(
-            'films need imageio-ffmpeg; install it with: pip install "tempose[render]"'
-        ) from None
-    return imageio_ffmpeg
