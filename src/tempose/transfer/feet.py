@@ -1,0 +1,170 @@
+"""Feet: where the source's stand, and which vertices of the target are theirs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.cluster.hierarchy import fcluster, linkage
+
+from tempose.metrics import detect_contacts
+from tempose.transfer.bones import Bones, split_role
+from tempose.transfer.pose import BonePose
+from tempose.typing import BoolArray, FloatArray, IntArray
+
+_NEAR_GROUND = 0.06
+
+
+@dataclass(frozen=True)
+class Feet:
+    """The feet that source and target share."""
+
+    names: tuple[str, ...]
+    """f names."""
+    trajectories: FloatArray
+    """(T, f, 3) metres: the ball of each source foot."""
+    vertices: tuple[IntArray, ...]
+    """Vertices of each target foot."""
+    contact: BoolArray
+    """(T, f) whether the source foot is on the ground."""
+
+
+def bone_feet(
+    bones: Bones, motion: BonePose, target: BonePose, owner: IntArray, height: float, fps: float
+) -> Feet:
+    """Feet of bodies made of bones.
+
+    Parameters
+    ----------
+    bones : Bones
+        B bones.
+    motion : BonePose
+        (T, B) source.
+    target : BonePose
+        (B,) target at rest.
+    owner : (n,) int
+        Bone of largest influence on each target vertex.
+    height : float
+        Height of the source, metres.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    Feet
+        By role; for other bodies the leaves of the tree that reach the ground. None if there are none.
+    """
+    names: list[str] = []
+    points: list[FloatArray] = []
+    vertices: list[IntArray] = []
+    for group, ball in _foot_groups(bones, target):
+        mine = np.flatnonzero(np.isin(owner, group))
+        if len(mine):
+            names.append(bones.roles[group[0]] or bones.names[group[0]])
+            points.append(motion.ends[:, ball] if ball == group[0] else motion.starts[:, ball])
+            vertices.append(mine)
+    trajectories = np.stack(points, axis=1) if points else np.zeros((len(motion.starts), 0, 3))
+    return Feet(tuple(names), trajectories, tuple(vertices), detect_contacts(trajectories, height, fps))
+
+
+def _foot_groups(bones: Bones, target: BonePose) -> list[tuple[list[int], int]]:
+    """Bones of each foot, and the one whose start (toes) or end (foot alone) touches the ground."""
+    groups: list[tuple[list[int], int]] = []
+    for side in ("left_", "right_"):
+        foot, toes = bones.find(side + "foot"), bones.find(side + "toes")
+        if foot is not None:
+            groups.append(([foot] if toes is None else [foot, toes], foot if toes is None else toes))
+    if groups or any(bones.roles):
+        return groups
+    leaves = sorted(set(range(len(bones.names))) - {int(p) for p in bones.parents})
+    low = target.starts[:, 1].min()
+    reach = _NEAR_GROUND * 2 * float(np.ptp(target.starts[:, 1]))
+    return [([b], b) for b in leaves if target.starts[b, 1] < low + reach]
+
+
+def flat_stance(bones: Bones, motion: BonePose, height: float, fps: float) -> BoolArray:
+    """Tell when foot and toe bones lie flat: ankle and ball both on the ground.
+
+    Parameters
+    ----------
+    bones : Bones
+        B bones.
+    motion : BonePose
+        (T, B) source.
+    height : float
+        Height of the source, metres.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    (T, B) ndarray of bool
+        False for other bones.
+    """
+    flat = np.zeros(motion.starts.shape[:2], dtype=bool)
+    for b, role in enumerate(bones.roles):
+        if split_role(role)[1] != "foot":
+            continue
+        ends = np.stack([motion.starts[:, b], motion.ends[:, b]], axis=1)
+        touching = detect_contacts(ends, height, fps)
+        both = touching.all(axis=1)
+        flat[:, b] = both if both.any() else touching[:, 1]
+        toes = bones.find(role.replace("foot", "toes"))
+        if toes is not None:
+            flat[:, toes] = flat[:, b]
+    return flat
+
+
+def mesh_feet(
+    V: FloatArray,
+    V_rest: FloatArray,
+    source: IntArray,
+    V_target: FloatArray,
+    F_target: IntArray,
+    target: IntArray,
+    fps: float,
+) -> Feet:
+    """Feet of two meshes: clusters of paired vertices that lie near the ground in both rest poses.
+
+    Parameters
+    ----------
+    V : (T, n, 3) float
+        Source frames.
+    V_rest : (n, 3) float
+        Source at rest.
+    source : (k,) int
+        Paired source vertices.
+    V_target : (n2, 3) float
+        Target at rest.
+    F_target : (m2, 3) int
+        Its faces.
+    target : (k,) int
+        Paired target vertices.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    Feet
+        Possibly none.
+    """
+    height, height2 = float(np.ptp(V_rest[:, 1])), float(np.ptp(V_target[:, 1]))
+    low = V_rest[source, 1] < V_rest[:, 1].min() + _NEAR_GROUND * height
+    low &= V_target[target, 1] < V_target[:, 1].min() + 2 * _NEAR_GROUND * height2
+    chosen = np.flatnonzero(low)
+    if len(chosen) == 0:
+        return Feet((), np.zeros((len(V), 0, 3)), (), np.zeros((len(V), 0), dtype=bool))
+    labels = np.ones(1, dtype=int)
+    if len(chosen) > 1:
+        labels = fcluster(linkage(V_rest[source[chosen]], "single"), 0.12 * height, "distance")
+    points: list[FloatArray] = []
+    vertices: list[IntArray] = []
+    for label in np.unique(labels):
+        mine = chosen[labels == label]
+        points.append(np.asarray(V[:, source[mine]], dtype=np.float64).mean(axis=1))
+        middle = V_target[target[mine]].mean(axis=0)
+        close = np.linalg.norm(V_target - middle, axis=1) < 0.1 * height2
+        vertices.append(np.flatnonzero(close & (V_target[:, 1] < middle[1] + 0.05 * height2)))
+    trajectories = np.stack(points, axis=1)
+    names = tuple(f"foot {i + 1}" for i in range(len(points)))
+    return Feet(names, trajectories, tuple(vertices), detect_contacts(trajectories, height, fps))

@@ -1,0 +1,198 @@
+"""A skeleton clip moves a mesh: the stages of the paper's section 5, in order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose.clips import Mesh, SkeletonClip
+from tempose.kinematics.roles import find_roles
+from tempose.rotations import multiply
+from tempose.transfer.alignment import align_reference
+from tempose.transfer.bones import Bones, make_bones, split_role
+from tempose.transfer.facing import UP
+from tempose.transfer.feet import Feet, bone_feet, flat_stance
+from tempose.transfer.motion_transfer import Anchor, MotionTransfer
+from tempose.transfer.pairs import Pairs
+from tempose.transfer.pose import BonePose
+from tempose.transfer.reference import Reference, bone_motion, choose_reference
+from tempose.transfer.signs import consistent_signs
+from tempose.transfer.skin_pairs import estimate_joints
+from tempose.typing import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """All that is fixed before the first frame is solved."""
+
+    solver: MotionTransfer
+    """Factorised target."""
+    rotations: FloatArray
+    """(T, B, 4) rotations of the target's marks, signs agreeing."""
+    anchor_path: FloatArray
+    """(T, 3) movement of the source's anchor from its reference place, metres."""
+    feet: Feet
+    """Feet of both."""
+    leg_ratio: float
+    """Leg length of the target over that of the source."""
+    source_height: float
+    """Metres."""
+    owner: IntArray
+    """(n,) bone of largest influence on each target vertex."""
+    bones: Bones | None = None
+    """The bones, for a skeleton source."""
+    motion: BonePose | None = None
+    """(T, B) the source's bones."""
+    target: BonePose | None = None
+    """(B,) the target's bones at rest."""
+    chosen: str = ""
+    """Which reference was taken."""
+    first_frame: int = 0
+    """First frame of the source that is motion."""
+    warnings: tuple[str, ...] = ()
+    """What is doubtful."""
+
+
+def prepare_skeleton(
+    clip: SkeletonClip,
+    mesh: Mesh,
+    pairs: Pairs,
+    *,
+    mapping: dict[str, str] | None = None,
+    rest_clip: SkeletonClip | None = None,
+    rest_frame: int | None = None,
+    volume: float = 0.0,
+) -> Prepared:
+    """Do everything that comes before the frames.
+
+    Parameters
+    ----------
+    clip : SkeletonClip
+        Source.
+    mesh : Mesh
+        Target at rest.
+    pairs : Pairs
+        Of kind ``"joints"``, checked.
+    mapping : dict of str to str, optional
+        Source joint to body role.
+    rest_clip : SkeletonClip, optional
+        Clip of the same skeleton that holds the reference pose.
+    rest_frame : int, optional
+        Frame of the reference pose, in `rest_clip` or the source.
+    volume : float, default 0
+        See `MotionTransfer`.
+
+    Returns
+    -------
+    Prepared
+        Solver, rotations and paths.
+
+    Raises
+    ------
+    ValueError
+        If the reference clip has another skeleton, or no frame is left.
+    """
+    roles = find_roles(clip.skeleton, mapping)
+    bones = make_bones(clip.skeleton, tuple(dict.fromkeys(pairs.source)), roles)  # type: ignore[arg-type]
+    column = np.array([bones.names.index(str(name)) for name in pairs.source])
+    solver = MotionTransfer(
+        mesh, mesh.faces[pairs.target].ravel(), np.repeat(column, 3), len(bones.names), volume=volume
+    )
+    basis = solver.basis
+    assert basis is not None
+    target = _target_pose(mesh, basis, bones, pairs)
+    reference = _reference(clip, bones, roles, target, rest_clip, rest_frame)
+    moving = clip.frames(slice(reference.first_frame, None))
+    motion = bone_motion(moving, bones, roles)
+    height = _source_height(reference, motion)
+    standing = flat_stance(bones, motion, height, clip.fps)
+    K = align_reference(bones, motion, reference.pose, target, standing, reference.upright)
+    Q = consistent_signs(multiply(motion.turns, K), bones.parents)
+    solver.anchor = _pelvis(mesh, basis, bones, target)
+    owner = basis.argmax(axis=1)
+    return Prepared(
+        solver,
+        Q,
+        _anchor_points(bones, motion) - _anchor_points(bones, reference.pose),
+        bone_feet(bones, motion, target, owner, height, clip.fps),
+        _leg_ratio(bones, target, motion),
+        height,
+        owner,
+        bones,
+        motion,
+        target,
+        reference.chosen,
+        reference.first_frame,
+        reference.warnings,
+    )
+
+
+def _reference(
+    clip: SkeletonClip,
+    bones: Bones,
+    roles: dict[str, int],
+    target: BonePose,
+    rest_clip: SkeletonClip | None,
+    rest_frame: int | None,
+) -> Reference:
+    if rest_clip is None:
+        return choose_reference(clip, bones, roles, target, rest_frame)
+    if rest_clip.skeleton.names != clip.skeleton.names:
+        raise ValueError(
+            "source_rest must hold the same joints as the source, got "
+            f"{rest_clip.skeleton.n_joints} joints against {clip.skeleton.n_joints}"
+        )
+    chosen = choose_reference(rest_clip, bones, roles, target, rest_frame)
+    return Reference(
+        chosen.pose,
+        chosen.upright,
+        f"{chosen.chosen} of {rest_clip.name or 'source_rest'}",
+        warnings=chosen.warnings,
+    )
+
+
+def _target_pose(mesh: Mesh, basis: FloatArray, bones: Bones, pairs: Pairs) -> BonePose:
+    starts, ends = estimate_joints(mesh.vertices, basis, bones.parents)
+    for b, name in enumerate(bones.names):
+        if name in pairs.joints:
+            starts[b] = pairs.joints[name]
+    for b, name in enumerate(bones.names):
+        if name in pairs.ends:
+            ends[b] = pairs.ends[name]
+    turns = np.tile([1.0, 0, 0, 0], (len(bones.names), 1))
+    return BonePose(turns, starts, ends)
+
+
+def _pelvis(mesh: Mesh, basis: FloatArray, bones: Bones, target: BonePose) -> Anchor:
+    """Pelvis: the midpoint of the hip joints, carried by the vertices of the root bone."""
+    weights = np.where(basis[:, 0] > 0.5, basis[:, 0], 0.0)
+    weights = weights if weights.sum() > 0 else np.maximum(basis[:, 0], 1e-9)
+    return Anchor(weights / weights.sum(), 0, _anchor_points(bones, target))
+
+
+def _anchor_points(bones: Bones, pose: BonePose) -> FloatArray:
+    thighs = [b for side in ("left_", "right_") if (b := bones.find(side + "thigh")) is not None]
+    return pose.starts[..., thighs or [0], :].mean(axis=-2)
+
+
+def _leg_ratio(bones: Bones, target: BonePose, motion: BonePose) -> float:
+    """Length of thigh and shin in the target over that in the source; of all bones where there are none."""
+    ours, theirs = target.lengths, np.median(motion.lengths, axis=0)
+    legs = [b for b, role in enumerate(bones.roles) if split_role(role)[1] in ("thigh", "shin")]
+    if not legs or theirs[legs].sum() <= 0 or ours[legs].sum() <= 0:
+        legs = [b for b in range(len(ours)) if ours[b] > 0 and theirs[b] > 0]
+    if not legs:
+        return 1.0
+    return float(ours[legs].sum() / theirs[legs].sum())
+
+
+def _source_height(reference: Reference, motion: BonePose) -> float:
+    """Height of the source: of its reference pose where that stands, else the tallest of its frames."""
+
+    def extent(pose: BonePose) -> FloatArray:
+        points = np.concatenate([pose.starts, pose.ends], axis=-2) @ UP
+        return np.ptp(points, axis=-1)
+
+    tallest = float(np.percentile(extent(motion), 95))
+    return max(float(extent(reference.pose)), 1e-6) if reference.upright else max(tallest, 1e-6)

@@ -1,0 +1,123 @@
+"""Faces marked for every bone: closed rings round limbs, whole end parts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tempose.transfer.bones import split_role
+from tempose.typing import BoolArray, FloatArray, IntArray
+
+RING_PLACES = (0.3, 0.7)
+"""Where along a bone the rings lie; nearer to the joints bends sharper."""
+RING_SIZE = 12
+"""Marked faces a ring."""
+RIGID_PARTS = ("head", "hand", "foot", "toes")
+"""Parts that move as a whole: all their faces are marked."""
+
+
+def owned_faces(F: IntArray, weights: FloatArray) -> IntArray:
+    """Which bone a face belongs to.
+
+    Parameters
+    ----------
+    F : (m, 3) int
+        Faces.
+    weights : (n, B) float
+        Influence of each bone on each vertex.
+
+    Returns
+    -------
+    (m,) ndarray of int
+        Bone of largest influence where that reaches half of what the bone has at its best, else -1.
+    """
+    per_face = weights[F].mean(axis=1)
+    bone = per_face.argmax(axis=1)
+    value = per_face[np.arange(len(F)), bone]
+    best = per_face.max(axis=0)
+    return np.where(value >= 0.5 * best[bone], bone, -1)
+
+
+def mark_bones(
+    V: FloatArray,
+    F: IntArray,
+    weights: FloatArray,
+    roles: tuple[str, ...],
+    starts: FloatArray,
+    ends: FloatArray,
+    ring_places: tuple[float, ...] = RING_PLACES,
+) -> tuple[IntArray, IntArray]:
+    """Mark faces from skin weights.
+
+    Parameters
+    ----------
+    V : (n, 3) float
+        Rest vertices.
+    F : (m, 3) int
+        Faces.
+    weights : (n, B) float
+        Influence of each bone, as of a skin.
+    roles : tuple of str
+        B body roles; head, hands, feet and toes are marked whole, others by rings.
+    starts, ends : (B, 3) float
+        Where each bone starts and ends in the rest pose.
+    ring_places : tuple of float, default (0.3, 0.7)
+        Fractions of the bone at which rings lie.
+
+    Returns
+    -------
+    faces, bones : (k,) ndarray of int
+        Marked faces, each once, and the bone of each. A bone that dominates nowhere gets none.
+    """
+    owner = owned_faces(F, weights)
+    centres = V[F].mean(axis=1)
+    faces: list[IntArray] = []
+    bones: list[IntArray] = []
+    for b, role in enumerate(roles):
+        mine = np.flatnonzero(owner == b)
+        if split_role(role)[1] in RIGID_PARTS:
+            chosen = mine
+        else:
+            chosen = _rings(V, F, centres, mine, starts[b], ends[b], ring_places)
+        faces.append(chosen)
+        bones.append(np.full(len(chosen), b))
+    return np.concatenate(faces), np.concatenate(bones)
+
+
+def _rings(
+    V: FloatArray,
+    F: IntArray,
+    centres: FloatArray,
+    mine: IntArray,
+    start: FloatArray,
+    end: FloatArray,
+    places: tuple[float, ...],
+) -> IntArray:
+    axis = end - start
+    length = float(np.linalg.norm(axis))
+    if len(mine) <= RING_SIZE or length == 0:
+        return mine
+    axis = axis / length
+    along = (V[F[mine]] - start) @ axis / length
+    chosen = [
+        _ring(centres[mine[cut]] - (start + s * length * axis), axis, mine[cut])
+        for s in places
+        if (cut := _crossing(along, s)).any()
+    ]
+    # a bone that owns faces only beyond both rings (a short hip) still needs a hold on them
+    return np.unique(np.concatenate(chosen)) if chosen else mine[:: max(1, len(mine) // RING_SIZE)]
+
+
+def _crossing(along: FloatArray, s: float) -> BoolArray:
+    return (along.min(axis=1) <= s) & (along.max(axis=1) >= s)
+
+
+def _ring(offsets: FloatArray, axis: FloatArray, faces: IntArray) -> IntArray:
+    """Pick faces evenly by angle round the axis, nearest to the middle of each sector."""
+    u = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    u = u / np.linalg.norm(u)
+    angle = np.arctan2(offsets @ np.cross(axis, u), offsets @ u)
+    sector = np.floor((angle + np.pi) / (2 * np.pi) * RING_SIZE).astype(int) % RING_SIZE
+    middle = (sector + 0.5) / RING_SIZE * 2 * np.pi - np.pi
+    order = np.lexsort((np.abs(angle - middle), sector))
+    _, first = np.unique(sector[order], return_index=True)
+    return faces[order[first]]

@@ -1,0 +1,176 @@
+"""Pairs to and from files: JSON or TOML of ours, ``.cons`` and YAML marker lists of others."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from tempose._files import atomic_path
+from tempose.transfer.pairs import KINDS, Pairs
+
+KEYS = ("kind", "source", "target", "pairs", "part", "joints", "ends")
+
+
+def load_pairs(path: str | os.PathLike[str]) -> Pairs:
+    """Read pairs from a file.
+
+    Parameters
+    ----------
+    path : path-like
+        ``.json`` or ``.toml`` (ours), ``.cons`` (count, then ``source, target`` lines) or ``.yml`` with a
+        list of ``source:target`` vertex markers. All 0-based.
+
+    Returns
+    -------
+    Pairs
+        The pairs, not yet held against a mesh.
+
+    Raises
+    ------
+    ValueError
+        If the file is no such list; the message names the file and the place.
+    OSError
+        If it cannot be opened.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: expected a text file of pairs, found binary data") from None
+    suffix = path.suffix.lower()
+    readers = {
+        ".json": _from_json,
+        ".toml": _from_toml,
+        ".cons": _from_cons,
+        ".yml": _from_yaml,
+        ".yaml": _from_yaml,
+    }
+    if suffix not in readers:
+        raise ValueError(
+            f"{path}: pairs are read from {', '.join(sorted(readers))} or .mhw files, got {suffix!r}"
+        )
+    try:
+        return readers[suffix](text, str(path))
+    except (ValueError, TypeError) as error:
+        message = str(error)
+        raise ValueError(message if message.startswith(str(path)) else f"{path}: {message}") from None
+
+
+def save_pairs(path: str | os.PathLike[str], pairs: Pairs, source: str = "", target: str = "") -> None:
+    """Write pairs as JSON that a person can edit.
+
+    Parameters
+    ----------
+    path : path-like
+        Where to write.
+    pairs : Pairs
+        What to write.
+    source, target : str
+        Names of the two files, kept for the reader.
+    """
+    sources = pairs.source if pairs.kind == "joints" else [int(i) for i in pairs.source]
+    rows = [json.dumps([a, int(b)]) for a, b in zip(sources, pairs.target)]
+    head = {"kind": pairs.kind, "source": source, "target": target}
+    if pairs.parts:
+        head["part"] = list(pairs.parts)  # type: ignore[assignment]
+    for key in ("joints", "ends"):
+        places = getattr(pairs, key)
+        if places:
+            head[key] = {name: [float(x) for x in p] for name, p in places.items()}  # type: ignore[assignment]
+    body = ",\n ".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in head.items())
+    with atomic_path(path) as part:
+        part.write_text("{" + body + ',\n "pairs": [\n  ' + ",\n  ".join(rows) + "\n ]}\n", encoding="utf-8")
+
+
+def _from_json(text: str, path: str) -> Pairs:
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise ValueError(f"line {error.lineno} is not JSON: {error.msg}") from None
+    return _from_table(data, path)
+
+
+def _from_toml(text: str, path: str) -> Pairs:
+    try:
+        return _from_table(tomllib.loads(text), path)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"not TOML: {error}") from None
+
+
+def _from_table(data: Any, path: str) -> Pairs:
+    if not isinstance(data, dict):
+        raise ValueError(f"expected an object with the keys {', '.join(KEYS)}, found {type(data).__name__}")
+    unknown = sorted(set(data) - set(KEYS))
+    if unknown:
+        raise ValueError(f"unknown key {unknown[0]!r}; known are {', '.join(KEYS)}")
+    kind, rows = data.get("kind"), data.get("pairs")
+    if kind not in KINDS:
+        raise ValueError(f"kind must be one of {', '.join(KINDS)}, found {kind!r}")
+    if not isinstance(rows, list) or not rows:
+        raise ValueError("pairs must be a list of [source, target], found none")
+    for i, row in enumerate(rows):
+        expected = str if kind == "joints" else int
+        fits = (
+            isinstance(row, list) and len(row) == 2 and isinstance(row[0], expected) and type(row[1]) is int
+        )
+        if not fits or row[1] < 0 or (kind != "joints" and (type(row[0]) is not int or row[0] < 0)):
+            noun = "[joint name, face index]" if kind == "joints" else "[index, index] from 0"
+            raise ValueError(f"pair {i} must be {noun}, found {json.dumps(row)[:60]}")
+    source = tuple(row[0] for row in rows) if kind == "joints" else np.array([row[0] for row in rows])
+    return Pairs(
+        kind,
+        source,
+        np.array([row[1] for row in rows]),
+        tuple(data.get("part") or ()),
+        data.get("joints") or {},
+        data.get("ends") or {},
+        origin=path,
+    )
+
+
+def _from_cons(text: str, path: str) -> Pairs:
+    lines = [line.strip() for line in text.splitlines()]
+    rows = [(number, re.findall(r"-?\d+", line)) for number, line in enumerate(lines, 1) if line]
+    if not rows or len(rows[0][1]) != 1:
+        raise ValueError("line 1 must hold the number of pairs")
+    count, found = int(rows[0][1][0]), len(rows) - 1
+    for number, row in rows[1:]:
+        if len(row) != 2 or any(x.startswith("-") for x in row):
+            raise ValueError(
+                f"line {number} must be 'source, target' from 0, found {lines[number - 1][:60]!r}"
+            )
+    if count != found:
+        raise ValueError(f"line 1 announces {count} pairs, found {found}")
+    return _vertices([(int(a), int(b)) for _, (a, b) in rows[1:]], path)
+
+
+def _from_yaml(text: str, path: str) -> Pairs:
+    try:
+        # BaseLoader keeps strings: YAML 1.1 would read 12:30 as a number in base 60
+        data = yaml.load(text, Loader=yaml.BaseLoader)
+    except yaml.YAMLError as error:
+        raise ValueError(f"not YAML: {str(error).splitlines()[0]}") from None
+    markers = data.get("markers") if isinstance(data, dict) else data
+    if not isinstance(markers, list) or not markers:
+        raise ValueError("expected a list under 'markers', found none")
+    rows: list[tuple[int, int]] = []
+    for i, entry in enumerate(markers):
+        match = re.fullmatch(r"\s*\[?\s*(\d+)\s*[:, ]\s*(\d+)\s*\]?\s*", str(entry))
+        if match is None:
+            raise ValueError(f"marker {i} must be 'source:target' from 0, found {str(entry)[:60]!r}")
+        rows.append((int(match[1]), int(match[2])))
+    return _vertices(rows, path)
+
+
+def _vertices(rows: list[tuple[int, int]], path: str) -> Pairs:
+    table = np.array(rows, dtype=np.int64).reshape(-1, 2)
+    if table.size and table.max() > np.iinfo(np.int32).max:
+        raise ValueError(f"index {table.max()} is larger than any mesh")
+    return Pairs("vertices", table[:, 0], table[:, 1], origin=path)
