@@ -67,12 +67,12 @@ def read_nodes(doc: Document, frame: FloatArray) -> Nodes:
             if parents[c] not in (-1, i):
                 raise items[c].error(f"expected one parent, found nodes {parents[c]} and {i}")
             parents[c] = i
+    roots = [i for i, p in enumerate(parents) if p < 0]
+    reached = _depth_first(roots, children)
+    if len(reached) < len(items):
+        raise items[min(set(range(len(items))) - set(reached))].error("is its own ancestor")
     scene = _scene_roots(doc, len(items), parents)
-    roots = list(dict.fromkeys([*scene, *(i for i, p in enumerate(parents) if p < 0)]))
-    order = _depth_first(roots, children)
-    if len(order) < len(items):
-        lost = min(set(range(len(items))) - set(order))
-        raise items[lost].error("is its own ancestor")
+    order = _depth_first(list(dict.fromkeys([*scene, *roots])), children)
     names = tuple(item.text("name") for item in items)
     local = {
         i: m.reshape(4, 4).T for i, item in enumerate(items) if (m := item.numbers("matrix", 16)) is not None

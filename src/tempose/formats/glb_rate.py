@@ -63,7 +63,7 @@ def key_rate(keys: FloatArray) -> tuple[float | None, bool]:
     usual = float(np.median(gaps))
     steps = np.rint(gaps / usual)
     fits = (np.abs(gaps / usual - steps) < 0.01 * np.maximum(steps, 1.0)) & (steps > 0)
-    if fits.mean() < 0.9 or not 10.0 <= 1.0 / usual <= 1000.0:
+    if fits.mean() < 0.9 or not 9.5 < 1.0 / usual < 1010.0:
         return None, False
     rate = float(steps[fits].sum() / gaps[fits].sum())
     whole, span = round(rate), float(keys[-1] - keys[0])

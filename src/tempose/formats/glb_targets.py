@@ -170,13 +170,14 @@ def _principal(offsets: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]
 def _errors(
     clip: MeshClip, rest: FloatArray, weights: FloatArray, components: FloatArray
 ) -> tuple[float, float]:
-    """Largest and rms distance, metres."""
+    """Largest and rms distance, metres, as a reader gets them: summed in float64, stored in float32."""
     largest, squares = 0.0, 0.0
     T = len(weights)
+    W, C = weights.astype(np.float64), components.astype(np.float64)
     for start in range(0, T, 64):
         rows = slice(start, start + 64)
-        there = np.tensordot(weights[rows], components, 1) + rest
-        gap = ((there - clip.vertices[rows]).astype(np.float64) ** 2).sum(axis=-1)
+        there = (np.tensordot(W[rows], C, 1) + rest).astype(np.float32)
+        gap = ((there.astype(np.float64) - clip.vertices[rows]) ** 2).sum(axis=-1)
         largest, squares = max(largest, float(gap.max())), squares + float(gap.sum())
     return float(np.sqrt(largest)), float(np.sqrt(squares / (T * len(rest))))
 
