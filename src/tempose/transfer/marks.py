@@ -98,6 +98,10 @@ def _rings(
         return mine
     axis = axis / length
     along = (V[F[mine]] - start) @ axis / length
+    low, high = float(along.min()), float(along.max())
+    if low > min(places) or high < max(places):
+        # the part covers only a stretch of its bone, as hips do: rings go where it is
+        places = tuple(low + s * (high - low) for s in places)
     chosen = [
         _ring(centres[mine[cut]] - (start + s * length * axis), axis, mine[cut])
         for s in places

@@ -60,7 +60,7 @@ def pairs_from_skin(
     rest = np.asarray(target.skeleton.rest_rotations)
     _, starts, ends = bone_spans(target.skeleton, joints, target_roles, rest, target.skeleton.offsets[0])
     faces, bones = mark_bones(
-        target.mesh.vertices, target.mesh.faces, weights, roles, starts, ends, ring_places
+        target.mesh.vertices, target.mesh.faces, weights, roles, starts, _mark_ends(roles, starts, ends), ring_places
     )
     return Pairs(
         "joints",
@@ -71,6 +71,15 @@ def pairs_from_skin(
         ends={name: ends[b] for b, name in enumerate(names)},
         origin="the target's skin weights",
     )
+
+
+def _mark_ends(roles: tuple[str, ...], starts: FloatArray, ends: FloatArray) -> FloatArray:
+    """Let rings of the hips lie across the trunk: many skeletons have a hip bone that points forward."""
+    top = next((roles.index(role) for role in ("neck", "head", "chest") if role in roles), None)
+    if "hips" in roles and top is not None:
+        ends = np.array(ends)
+        ends[roles.index("hips")] = starts[top]
+    return ends
 
 
 _Match = tuple[tuple[str, ...], tuple[str, ...], IntArray, list[IntArray]]
