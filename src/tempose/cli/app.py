@@ -12,12 +12,14 @@ from tempose.cli.convert import convert
 from tempose.cli.data import data
 from tempose.cli.info import info
 from tempose.cli.render import render
+from tempose.cli.transfer import transfer
 
 app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.command()(transfer)
 app.command()(info)
 app.command()(convert)
 app.command()(compare)

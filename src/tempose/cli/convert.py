@@ -9,7 +9,7 @@ import typer
 
 import tempose
 from tempose.cli.console import note, progress_bar, writing
-from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, load
+from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, check_out, load
 
 if TYPE_CHECKING:
     from tempose.clips import Mesh, MeshClip
@@ -57,6 +57,7 @@ def convert(  # numpydoc ignore=PR01
     from_fps: FromFps = None,
 ) -> None:
     """Write a mesh or a clip in another format, rate, unit or up axis."""
+    check_out(out)
     loaded = load(
         source,
         up=from_up,

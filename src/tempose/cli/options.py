@@ -53,3 +53,28 @@ def load(path: str, **options: Any) -> Mesh | MeshClip | SkeletonClip:
         loaded = tempose.load(path, progress=progress, **options)
     note(tempose.formats.describe(loaded))
     return loaded
+
+
+def check_out(path: Path) -> None:
+    """Refuse an output that cannot be written before the work is done that makes it.
+
+    Parameters
+    ----------
+    path : Path
+        Where a clip shall go.
+
+    Raises
+    ------
+    ValueError
+        If its ending is no format that can be written.
+    FileNotFoundError
+        If its folder does not exist.
+    """
+    formats = tempose.formats.FORMATS
+    suffix = path.suffix.lower()
+    if suffix and not (suffix in formats and formats[suffix].writes):
+        known = ", ".join(name for name, kind in formats.items() if kind.writes)
+        raise ValueError(f"{path}: cannot write {suffix!r}; known are {known}")
+    folder = path.parent
+    if not folder.is_dir() and not (folder.parent.is_dir() and "#" in path.name):
+        raise FileNotFoundError(f"{folder}: no such folder to write {path.name!r} in; create it first")
