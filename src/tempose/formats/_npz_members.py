@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 import tokenize
+import warnings
 import zipfile
 import zlib
 from pathlib import Path
@@ -97,7 +98,10 @@ def _read_array(stream: IO[bytes], size: int) -> Any:
     }.get(version)
     if header is None:
         raise ValueError(f"unknown version {version} of the numpy format")
-    shape, fortran, dtype = header(stream)
+    with warnings.catch_warnings():
+        # headers of Python 2 and some damaged ones are warned about; the checks below decide
+        warnings.simplefilter("ignore")
+        shape, fortran, dtype = header(stream)
     if dtype.hasobject:
         raise ValueError("holds Python objects, which are never unpickled")
     length = math.prod(shape) * dtype.itemsize

@@ -142,16 +142,13 @@ class _Rows:
         for count, value in self.types:
             length = 1
             if count is not None:
-                stated = self.take(begin, 1, count, k)
-                length, begin = (
-                    int(stated[0]) if stated[0] == stated[0] // 1 else -1,
-                    begin + self.size(count),
-                )
-                if length < 0:
+                stated = float(self.take(begin, 1, count, k)[0])
+                if not (stated >= 0 and stated.is_integer()):
                     raise FormatError(
                         f"{self.path}: expected a list length in row {k} of '{self.element.name}', "
-                        f"found {stated[0]:g}"
+                        f"found {stated:g}"
                     )
+                length, begin = int(stated), begin + self.size(count)
             values.append(self.take(begin, length, value, k))
             begin += length * self.size(value)
         return values, begin

@@ -78,7 +78,7 @@ def parse_set(comment: str) -> tuple[str, ...]:
 def _vertex_extras(mesh: Mesh) -> tuple[list[tuple[str, str]], FloatArray]:
     """Properties beside the position: texture coordinates of vertices, colours."""
     names: list[tuple[str, str]] = []
-    columns = [np.zeros((len(mesh.vertices), 0))]
+    columns: list[FloatArray] = [np.zeros((len(mesh.vertices), 0))]
     if mesh.uv is not None and mesh.uv_faces is None:
         names += [("s", "f8"), ("t", "f8")]
         columns.append(mesh.uv)

@@ -133,7 +133,8 @@ def clip_name(path: str) -> str:
 def _guarded(path: str, function: Any, *arguments: Any) -> Any:
     """Call a reader; what the data types refuse is the fault of the file."""
     try:
-        return function(*arguments)
+        with np.errstate(all="ignore"):
+            return function(*arguments)
     except FormatError:
         raise
     except MemoryError:

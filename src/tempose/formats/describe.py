@@ -29,7 +29,7 @@ def describe(thing: Mesh | MeshClip | SkeletonClip | SkinnedMesh | MarkerClip) -
     Examples
     --------
     >>> describe(Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], name="tile"))
-    'mesh tile: 3 vertices, 1 triangles, still, 1.00 m tall, from memory, y up, unit m'
+    'mesh tile: 3 vertices, 1 triangles, still, 1 m tall, from memory, y up, unit m'
     """
     if isinstance(thing, SkinnedMesh):
         kind, size, time = "skinned mesh", _size(thing.mesh, thing.skeleton), "still"
@@ -42,11 +42,11 @@ def describe(thing: Mesh | MeshClip | SkeletonClip | SkinnedMesh | MarkerClip) -
         time = _time(thing)
     height = _height(thing)
     title = f"{kind} {name}" if name else kind
-    line = f"{title}: {size}, {time}, {height:.2f} m tall, {_origin(source)}"
+    line = f"{title}: {size}, {time}, {height:.3g} m tall, {_origin(source)}"
     if source.guessed:
         line += f"; guessed: {', '.join(source.guessed)}"
-    for warning in [*source.notes, *_warnings(height, source)]:
-        line += f"; note: {warning}"
+    for warning in [*source.notes, *_warnings(height, source, getattr(thing, "n_frames", 1))]:
+        line += f"; note: {warning.rstrip('.')}"
     return line
 
 
@@ -68,7 +68,8 @@ def _size(mesh: Mesh, skeleton: Skeleton | None = None) -> str:
 def _time(thing: Any) -> str:
     moving = "moving" if _moves(thing) else "still"
     T = len(thing.positions) if isinstance(thing, MarkerClip) else thing.n_frames
-    return f"{T} frames at {thing.fps:.4g} fps ({max(T - 1, 0) / thing.fps:.2f} s, {moving})"
+    frames = "1 frame" if T == 1 else f"{T} frames"
+    return f"{frames} at {thing.fps:.4g} fps ({max(T - 1, 0) / thing.fps:.2f} s, {moving})"
 
 
 def _moves(thing: Any) -> bool:
@@ -105,11 +106,11 @@ def _origin(source: Source) -> str:
     return f"from {source.format or 'memory'}, {source.up} up, unit {unit}"
 
 
-def _warnings(height: float, source: Source) -> list[str]:
+def _warnings(height: float, source: Source, T: int) -> list[str]:
     found: list[str] = []
     low, high = _PLAUSIBLE_METRES
     if not low <= height <= high:
         found.append(f"{height:.3g} m tall is unusual for a body; if that is wrong, state up and unit")
-    if "fps" in source.guessed:
+    if "fps" in source.guessed and T > 1:
         found.append("the file states no frame rate; if it was not as assumed, state fps")
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from pathlib import Path
 
@@ -94,7 +95,7 @@ def encoder(mesh: Mesh) -> Encoder:
     corners, counts = unfan(mesh.faces, mesh.polygons)
     begins = np.append(0, np.cumsum(counts)).tolist()
     words = list(map(str, corners.tolist()))
-    rows = [f"{b - a} {' '.join(words[a:b])}\n" for a, b in zip(begins, begins[1:])]
+    rows = [f"{b - a} {' '.join(words[a:b])}\n" for a, b in itertools.pairwise(begins)]
     head, tail = f"OFF\n{len(mesh.vertices)} {len(counts)} 0\n", "".join(rows)
 
     def encode(V: FloatArray, digits: int | None = None) -> bytes:

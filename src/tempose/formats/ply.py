@@ -156,10 +156,10 @@ def _colors(vertex: dict[str, Column]) -> FloatArray | None:
     for names in _COLOR_NAMES:
         if all(name in vertex and vertex[name].counts is None for name in names):
             columns = [vertex[name].values for name in names]
-            kind = columns[0].dtype
+            kind: np.dtype = columns[0].dtype
             colors = np.stack(columns, axis=1).astype(np.float64)
-            if kind.kind in "iu":
-                colors /= np.iinfo(kind).max
+            if kind.kind == "u":
+                colors /= float(2 ** (8 * kind.itemsize) - 1)
             elif colors.max(initial=0.0) > 1:
                 colors /= 255.0
             return np.clip(np.nan_to_num(colors), 0.0, 1.0)
