@@ -87,12 +87,13 @@ def bridge(s: FloatArray, start: FloatArray, end: FloatArray, via: FloatArray, a
         Cubic splines: of all curves that fit, those with the least squared acceleration.
     """
     curves = np.zeros((len(s), start.shape[1]))
-    for column in range(curves.shape[1]):
-        known = np.isfinite(via[:, column])
-        x = np.concatenate([[0.0], at[known], [1.0]])
-        y = np.concatenate([start[:1, column], via[known, column], end[:1, column]])
-        ends: Any = ((1, start[1, column]), (1, end[1, column]))
-        curves[:, column] = CubicSpline(x, y, bc_type=ends)(s)
+    known = np.isfinite(via)
+    for pattern in np.unique(known, axis=1).T:
+        same = (known == pattern[:, None]).all(axis=0)
+        x = np.concatenate([[0.0], at[pattern], [1.0]])
+        y = np.concatenate([start[:1, same], via[np.ix_(pattern, same)], end[:1, same]])
+        ends: Any = ((1, start[1, same]), (1, end[1, same]))
+        curves[:, same] = CubicSpline(x, y, bc_type=ends)(s)
     return curves
 
 

@@ -30,8 +30,11 @@ class Leg:
     """(k, 8) state to pass through in every swing; NaN leaves a curve free."""
     at: FloatArray = field(default_factory=lambda: np.zeros(0))
     """(k,) where in the swing, between 0 and 1."""
-    clearance: float = 0.012
-    """Height of the sole over the ground in the middle of a swing that would otherwise graze it, metres."""
+
+    @property
+    def clearance(self) -> float:
+        """Height of the sole over the ground in the middle of a swing that would otherwise graze it, metres."""
+        return 0.015 * float(np.linalg.norm(self.limb.bones, axis=1).sum())
 
 
 def swing_keys(via: Sequence[Mapping[str, float]]) -> tuple[FloatArray, FloatArray]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tempose.clips import Skeleton
-from tempose.rotations import from_matrix, rotate
+from tempose.rotations import from_matrix
 from tempose.samples.motion_curves import about
 from tempose.typing import FloatArray
 
@@ -98,8 +98,10 @@ def limb_vector(limb: Limb, flexion: FloatArray, fold: FloatArray, swing: FloatA
         Metres.
     """
     angle = np.cumsum(limb_bends(limb, flexion, fold, swing), axis=1)
-    lower = rotate(about("x", angle), limb.bones[1:])
-    return limb.bones[0] + lower.sum(axis=1)
+    # hinges turn about X: a rotation of the plane of Y and Z, as complex numbers
+    plane = limb.bones[:, 1] + 1j * limb.bones[:, 2]
+    end = plane[0] + np.exp(1j * angle) @ plane[1:]
+    return np.stack([np.full(len(end), limb.bones[:, 0].sum()), end.real, end.imag], axis=1)
 
 
 def flexion_for_length(limb: Limb, length: FloatArray, fold: FloatArray, swing: FloatArray) -> FloatArray:

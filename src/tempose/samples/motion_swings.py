@@ -20,8 +20,8 @@ from tempose.samples.motion_limbs import flexion_for_length, limb_vector
 from tempose.samples.motion_stances import STATE, Stance, planted, standing_state
 from tempose.typing import BoolArray, FloatArray, IntArray
 
-STEP = 0.004
-"""Seconds between the samples from which the velocities at lift-off and landing are taken."""
+STEP = 0.01
+"""Distance of the samples from which the velocities at lift-off and landing are taken, in swings."""
 
 WHIP = 3.0
 """Radians of flexion a swing: a stretched leg bends no faster as its foot leaves or meets the ground."""
@@ -60,8 +60,12 @@ def leg_states(skeleton: Skeleton, leg: Leg, body: Body, times: FloatArray) -> t
         for stance in leg.stances
         if len(frames := np.flatnonzero((times >= stance.start) & (times <= stance.end)))
     ]
-    back = -STEP * np.arange(5)
-    edges = [edge for a, b, _ in swings for edge in ((a, a.end + back), (b, b.start - back))]
+    into = STEP * np.arange(5)
+    edges = [
+        edge
+        for a, b, _ in swings
+        for edge in ((a, a.end - into * (b.start - a.end)), (b, b.start + into * (b.start - a.end)))
+    ]
     known = _standing(skeleton, leg, body, [(stance, times[frames]) for stance, frames in stands] + edges)
     for (stance, frames), rows in zip(stands, known):
         states[frames] = rows
@@ -69,10 +73,9 @@ def leg_states(skeleton: Skeleton, leg: Leg, body: Body, times: FloatArray) -> t
     ends = known[len(stands) :]
     height = limb_roots(skeleton, leg.limb, body(times))[1][:, 1]
     for k, (before, after, frames) in enumerate(swings):
-        span = after.start - before.end
-        s = (times[frames] - before.end) / span
-        start, end = _edge(ends[2 * k], -STEP / span), _edge(ends[2 * k + 1], STEP / span)
-        states[frames] = bridge(s, start, end, leg.via, leg.at)
+        s = (times[frames] - before.end) / (after.start - before.end)
+        edges_of_swing = _edge(ends[2 * k], -STEP), _edge(ends[2 * k + 1], STEP)
+        states[frames] = bridge(s, *edges_of_swing, leg.via, leg.at)
         lift_foot(leg, states, frames, s, height[frames])
     return states, contacts
 
