@@ -1,0 +1,241 @@
+"""A skirt as a ring of pendulums that hang from the waist and are pushed aside by the legs.
+
+Each pendulum, a gore, swings outwards and sideways. Gores are coupled to their neighbours by cloth, driven by
+the acceleration of the hips, and may not swing inside the legs; what a leg has pushed aside swings back when
+the leg is gone. So the skirt is late, overshoots, and remembers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from tempose.clips import SkeletonClip, SkinnedMesh
+from tempose.kinematics import forward_kinematics, rest_transforms
+from tempose.rotations import conjugate, rotate
+from tempose.samples.motion_curves import ease
+from tempose.samples.oscillators import acceleration, oscillator_step
+from tempose.samples.skirt_legs import least_angles
+from tempose.typing import FloatArray
+
+GORES = 36
+"""Pendulums round the waist."""
+
+FREQUENCY = 1.15
+"""Of a free gore, Hz."""
+
+DAMPING = 0.22
+"""Part of the critical damping: air and cloth."""
+
+CLOTH = 0.35
+"""Stiffness of the coupling to the neighbours, relative to that of a gore."""
+
+CONTACT = 14.0
+"""Frequency of the spring by which a leg pushes a gore, Hz."""
+
+RATE = 720.0
+"""Least number of steps a second."""
+
+
+@dataclass(frozen=True, eq=False)
+class SkirtShape:
+    """A skirt at rest, in the basis of the hips."""
+
+    centre: FloatArray
+    """(3,) middle of the waist, metres."""
+    azimuth: FloatArray
+    """(G,) direction of each gore, radians from +Z towards +X."""
+    waist: FloatArray
+    """(G,) distance of its upper end from the centre, metres."""
+    slope: FloatArray
+    """(G,) angle to the vertical, radians."""
+    length: FloatArray
+    """(G,) metres."""
+
+
+def swing_skirt(skin: SkinnedMesh, clip: SkeletonClip, vertices: FloatArray, mask: FloatArray) -> FloatArray:
+    """Displacement of the vertices of a skirt from where the hips alone would carry them.
+
+    Parameters
+    ----------
+    skin : SkinnedMesh
+        The body, with joints ``hips``, ``left_thigh`` and so on.
+    clip : SkeletonClip
+        T frames.
+    vertices : (k, 3) float
+        Vertices of the skirt at rest, metres.
+    mask : (k,) float
+        How far each takes part, 0 to 1.
+
+    Returns
+    -------
+    (T, k, 3) ndarray
+        Metres.
+    """
+    hips = skin.skeleton.index("hips")
+    local = vertices - rest_transforms(skin.skeleton)[1][hips]
+    shape = measure_skirt(local)
+    world, position = forward_kinematics(skin.skeleton, clip.rotations, clip.root_position)
+    out, aside = gore_forces(shape, world[:, hips], position[:, hips], clip.fps)
+    # the pelvis is in the way, too: a gore never swings in by more than a part of its slope
+    least = np.maximum(least_angles(skin, clip, shape) - shape.slope, -0.5 * np.abs(shape.slope))
+    outward = swing_gores(out, clip.fps, least)
+    sideways = swing_gores(aside, clip.fps, None)
+    moved = mask[:, None] * _displace(shape, local, outward, sideways)
+    return rotate(world[:, hips, None], moved)
+
+
+def measure_skirt(local: FloatArray) -> SkirtShape:
+    """Find waist, hem and gores of a skirt.
+
+    Parameters
+    ----------
+    local : (k, 3) float
+        Its vertices at rest relative to the hips, metres.
+
+    Returns
+    -------
+    SkirtShape
+        Gores from waist to hem.
+    """
+    top, bottom = local[:, 1].max(), local[:, 1].min()
+    centre = np.array([*local[:, :1].mean(axis=0), top, *local[:, 2:].mean(axis=0)])
+    part = (top - local[:, 1]) / (top - bottom)
+    azimuth = 2.0 * np.pi * np.arange(GORES) / GORES
+    waist = _outline(local[part < 0.2] - centre, azimuth)
+    hem = _outline(local[part > 0.85] - centre, azimuth)
+    return SkirtShape(
+        centre, azimuth, waist, np.arctan2(hem - waist, top - bottom), np.hypot(hem - waist, top - bottom)
+    )
+
+
+def _outline(points: FloatArray, azimuth: FloatArray) -> FloatArray:
+    """Distance from the axis as a smooth function of direction, by least squares."""
+
+    def basis(angle: FloatArray) -> FloatArray:
+        return np.stack([f(k * angle) for k in range(3) for f in (np.cos, np.sin)], axis=1)
+
+    angle = np.arctan2(points[:, 0], points[:, 2])
+    distance = np.hypot(points[:, 0], points[:, 2])
+    return basis(azimuth) @ np.linalg.lstsq(basis(angle), distance, rcond=None)[0]
+
+
+def gore_forces(
+    shape: SkirtShape, turn: FloatArray, position: FloatArray, fps: float
+) -> tuple[FloatArray, FloatArray]:
+    """Angular accelerations that drive the gores, from gravity and the motion of the hips.
+
+    Parameters
+    ----------
+    shape : SkirtShape
+        G gores.
+    turn : (T, 4) float
+        World rotation of the hips, wxyz.
+    position : (T, 3) float
+        Place of the hips, metres.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    outward, sideways : (T, G) ndarray
+        Radians per second squared; zero when the hips rest upright.
+    """
+    gravity = np.array([0.0, -9.81, 0.0])
+    radial = np.stack([np.sin(shape.azimuth), 0 * shape.azimuth, np.cos(shape.azimuth)], axis=1)
+    along = np.stack([np.cos(shape.azimuth), 0 * shape.azimuth, -np.sin(shape.azimuth)], axis=1)
+    down, out = np.cos(shape.slope)[:, None], np.sin(shape.slope)[:, None]
+    middle = shape.centre + (shape.waist[:, None] + 0.5 * shape.length[:, None] * out) * radial
+    middle[:, 1] -= 0.5 * (shape.length[:, None] * down)[:, 0]
+    place = position[:, None] + rotate(turn[:, None], middle)
+    felt = rotate(conjugate(turn)[:, None], gravity - acceleration(place, fps)) - gravity
+    # a uniform rod turns about its end by 3/2 of the force at its middle over its length
+    pull = 1.5 * felt / shape.length[:, None]
+    outward = down * radial + out * np.array([0.0, 1.0, 0.0])
+    return np.sum(pull * outward, axis=-1), np.sum(pull * along, axis=-1)
+
+
+def swing_gores(force: FloatArray, fps: float, least: FloatArray | None) -> FloatArray:
+    """Angles of coupled gores that start at rest.
+
+    Parameters
+    ----------
+    force : (T, G) float
+        Radians per second squared.
+    fps : float
+        Frames per second.
+    least : (T, G) float or None
+        Angles at which legs stand in the way, radians.
+
+    Returns
+    -------
+    (T, G) ndarray
+        Radians from the rest pose.
+
+    Notes
+    -----
+    Free gores are stepped exactly. A leg is a stiff one-sided spring, critically damped, which pushes and
+    never pulls: unlike a hard stop it gives the same answer at every frame rate.
+    """
+    T, G = force.shape
+    substeps = max(int(np.ceil(RATE / fps)), 1)
+    frames, fine = np.arange(T), np.arange((T - 1) * substeps + 1) / substeps
+    free = oscillator_step(*_cloth(G), 1.0 / (fps * substeps))
+    driving = make_interp_spline(frames, force, k=1)(fine)
+    state, angles = np.zeros(2 * G), np.zeros((T, G))
+    legs, speed = np.full_like(driving, -np.inf), np.zeros_like(driving)
+    if least is not None:
+        curve = make_interp_spline(frames, least, k=min(3, T - 1))
+        legs, speed = curve(fine), curve(fine, 1) * fps
+        state[:G] = angles[0] = np.maximum(0.0, least[0])
+    for k in range(1, len(fine)):
+        push = _push(state[:G] - legs[k - 1], state[G:] - speed[k - 1])
+        state = free @ np.concatenate([state, driving[k - 1] + push, driving[k] + push])
+        if k % substeps == 0:
+            angles[k // substeps] = state[:G]
+    return angles
+
+
+def _cloth(G: int) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and damping of a ring of gores, each tied to its neighbours."""
+    omega = 2.0 * np.pi * FREQUENCY
+    ring = 2.0 * np.eye(G) - np.roll(np.eye(G), 1, axis=0) - np.roll(np.eye(G), -1, axis=0)
+    ties = CLOTH * (G / (2.0 * np.pi)) ** 2 * ring
+    return omega**2 * (np.eye(G) + ties), omega * (2.0 * DAMPING * np.eye(G) + 0.04 * ties)
+
+
+def _push(gap: FloatArray, speed: FloatArray) -> FloatArray:
+    """Acceleration by which legs push gores that went inside them."""
+    omega = 2.0 * np.pi * CONTACT
+    inside = np.maximum(-gap, 0.0)
+    # the damper sets in over the first hundredth of a radian, so that contact begins without a blow
+    damper = np.maximum(-2.0 * omega * speed, 0.0) * np.minimum(inside / 0.01, 1.0)
+    return omega**2 * inside + damper
+
+
+def _displace(shape: SkirtShape, local: FloatArray, outward: FloatArray, sideways: FloatArray) -> FloatArray:
+    """Turn each vertex about the waist by the angles of the gores beside it, in the basis of the hips."""
+    d = local - shape.centre
+    azimuth = np.arctan2(d[:, 0], d[:, 2])
+    shares = _shares(azimuth)
+    out, aside = outward @ shares.T, sideways @ shares.T
+    depth = -d[:, 1]
+    lean = ease(depth / (0.3 * depth.max()))
+    radius = np.hypot(d[:, 0], d[:, 2]) - shares @ shape.waist
+    turned = lean * out
+    new_radius = np.cos(turned) * radius + np.sin(turned) * depth
+    new_depth = np.cos(turned) * depth - np.sin(turned) * radius
+    radial = np.stack([np.sin(azimuth), 0 * azimuth, np.cos(azimuth)], axis=1)
+    along = np.stack([np.cos(azimuth), 0 * azimuth, -np.sin(azimuth)], axis=1)
+    moved = (new_radius - radius)[..., None] * radial + (lean * depth * np.tanh(aside))[..., None] * along
+    moved[..., 1] -= new_depth - depth
+    return moved
+
+
+def _shares(azimuth: FloatArray) -> FloatArray:
+    """Share of each gore in each vertex: a periodic cubic B-spline over the directions."""
+    x = np.abs((azimuth[:, None] * GORES / (2 * np.pi) - np.arange(GORES) + GORES / 2) % GORES - GORES / 2)
+    near, far = 2.0 / 3.0 - x**2 + x**3 / 2.0, (2.0 - x) ** 3 / 6.0
+    return np.where(x < 1, near, np.where(x < 2, far, 0.0))
