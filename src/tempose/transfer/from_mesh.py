@@ -145,7 +145,7 @@ def _walk(tree: Any, k: int, root: int = 0) -> tuple[IntArray, IntArray]:
     place = np.zeros(k, dtype=np.int64)
     place[order] = np.arange(k)
     above = predecessors[order]
-    return order, np.where(above >= 0, place[above], -1)
+    return order, np.where(above >= 0, place[np.maximum(above, 0)], -1)
 
 
 def _pull_back(

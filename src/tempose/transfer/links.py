@@ -80,8 +80,8 @@ def _loose_pairs(V: FloatArray, piece: IntArray) -> IntArray:
 
 def _query(points: FloatArray | KDTree, at: FloatArray, k: int) -> tuple[FloatArray, IntArray]:
     tree = points if isinstance(points, KDTree) else KDTree(points)
-    distance, index = tree.query(at, k=np.arange(1, k + 1))
-    return np.asarray(distance), np.asarray(index)
+    distance, index = tree.query(at, k=k)
+    return np.asarray(distance).reshape(len(at), k), np.asarray(index).reshape(len(at), k)
 
 
 def _near_pairs(V: FloatArray, piece: IntArray, radius: float) -> IntArray:

@@ -7,7 +7,7 @@ import numpy as np
 from tempose.transfer.bones import split_role
 from tempose.typing import BoolArray, FloatArray, IntArray
 
-RING_PLACES = (0.3, 0.7)
+RING_PLACES = (0.27, 0.73)
 """Where along a bone the rings lie; nearer to the joints bends sharper."""
 RING_SIZE = 12
 """Marked faces a ring."""
@@ -60,7 +60,7 @@ def mark_bones(
         B body roles; head, hands, feet and toes are marked whole, others by rings.
     starts, ends : (B, 3) float
         Where each bone starts and ends in the rest pose.
-    ring_places : tuple of float, default (0.3, 0.7)
+    ring_places : tuple of float, default (0.27, 0.73)
         Fractions of the bone at which rings lie.
 
     Returns

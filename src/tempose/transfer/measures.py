@@ -84,7 +84,7 @@ def soft_faces(F: IntArray, owner: IntArray, roles: tuple[str, ...]) -> BoolArra
         None where nothing is left or no roles are known.
     """
     rigid = np.array([split_role(role)[1] in RIGID_PARTS for role in roles])
-    soft = ~rigid[owner[F]].any(axis=1)
+    soft: BoolArray = np.logical_not(rigid[owner[F]].any(axis=1))
     return soft if rigid.any() and soft.any() else None
 
 
@@ -113,17 +113,16 @@ def direction_measures(
     dict
         ``bone_direction_deg`` with ``mean`` and ``max`` over the limbs, and the mean a bone.
     """
-    known = target.directions.any(axis=1) & (source.lengths > 0).all(axis=0)
+    known: BoolArray = np.logical_and(target.lengths > 0, (source.lengths > 0).all(axis=0))
     limbs = [b for b, role in enumerate(bones.roles) if split_role(role)[1] in LIMB_BONES and known[b]]
     if not limbs:
         limbs = [b for b in range(len(bones.names)) if known[b] and bones.parents[b] >= 0]
     if not limbs:
         return {}
     rest = solver.mesh.vertices
-    near = [_vertices_at(b, bones, owner) for b in limbs]
-    after = [_vertices_after(b, bones, owner) for b in limbs]
-    starts = apply_regressor(V, *regress_points(rest, target.starts[limbs], near))
-    ends = apply_regressor(V, *regress_points(rest, target.ends[limbs], after))
+    own = [_own_vertices(b, owner) for b in limbs]
+    starts = apply_regressor(V, *regress_points(rest, target.starts[limbs], own))
+    ends = apply_regressor(V, *regress_points(rest, target.ends[limbs], own))
     angles = direction_angles(source.directions[:, limbs], ends - starts)
     per_bone = {
         bones.roles[b] or bones.names[b]: round(float(angles[:, i].mean()), 3) for i, b in enumerate(limbs)
@@ -133,14 +132,8 @@ def direction_measures(
     }
 
 
-def _vertices_at(b: int, bones: Bones, owner: IntArray) -> IntArray:
-    mine = np.flatnonzero(np.isin(owner, [b, int(bones.parents[b])]))
-    return mine if len(mine) else np.arange(len(owner))
-
-
-def _vertices_after(b: int, bones: Bones, owner: IntArray) -> IntArray:
-    children = np.flatnonzero(bones.parents == b)
-    mine = np.flatnonzero(np.isin(owner, np.r_[b, children]))
+def _own_vertices(b: int, owner: IntArray) -> IntArray:
+    mine = np.flatnonzero(owner == b)
     return mine if len(mine) else np.arange(len(owner))
 
 

@@ -156,7 +156,7 @@ class MotionTransfer:
 
         self.pose_blocks(frames, receive)
         if place is not None:
-            out += (np.asarray(place, dtype=np.float64).reshape(-1, 3) - self.anchor.point)[:, None]
+            out += (as_floats(place, "place", (*lead, 3)).reshape(-1, 3) - self.anchor.point)[:, None]
         return out.reshape(*lead, *out.shape[1:])
 
     def pose_blocks(self, Q: FloatArray, receive: Callable[[slice, FloatArray], None]) -> None:

@@ -1,7 +1,8 @@
-"""Where the moving mesh stands: scaled path, feet that stay where they are put, one height."""
+"""Where the moving mesh stands: scaled path, feet that stay where they are put."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +32,7 @@ class Placement:
 
 def place_clip(
     anchor: FloatArray,
-    soles: list[FloatArray],
+    soles: Sequence[FloatArray],
     contact: BoolArray,
     ground: float,
     height: float,
@@ -63,12 +64,13 @@ def place_clip(
     Returns
     -------
     Placement
-        Path and height.
+        Path and height; without `hold` one height for the whole clip.
 
     Notes
     -----
     The scale is the one at which feet in contact move least: ``s = -sum(v_foot . v_hip) / sum(|v_hip|^2)``
-    over contact frames. What is left is taken out of the root step by step and interpolated through flight.
+    over contact frames. What is left is taken out of the root step by step and interpolated through flight,
+    and so is what keeps the standing sole off the ground.
     """
     scale = fit_scale(anchor, soles, contact, height, fps)
     fitted = scale is not None
@@ -79,12 +81,13 @@ def place_clip(
         steps = _slip_steps(soles, contact, shift, height, fps)
         shift[1:, [0, 2]] -= np.cumsum(steps, axis=0)
         correction = float(np.linalg.norm(steps, axis=1).sum())
-    shift[:, 1] += _height_offset(soles, contact, shift[:, 1], ground)
+    heights = _lifts(soles, contact, shift[:, 1], ground)
+    shift[:, 1] += _smooth(heights[:, None], max(1, round(fps / 20)))[:, 0] if hold else np.median(heights)
     return Placement(shift, float(scale), leg_ratio, fitted, correction)
 
 
 def fit_scale(
-    anchor: FloatArray, soles: list[FloatArray], contact: BoolArray, height: float, fps: float
+    anchor: FloatArray, soles: Sequence[FloatArray], contact: BoolArray, height: float, fps: float
 ) -> float | None:
     """Horizontal scale at which feet in contact slide least.
 
@@ -122,7 +125,7 @@ def fit_scale(
 
 
 def _slip_steps(
-    soles: list[FloatArray], contact: BoolArray, shift: FloatArray, height: float, fps: float
+    soles: Sequence[FloatArray], contact: BoolArray, shift: FloatArray, height: float, fps: float
 ) -> FloatArray:
     """Horizontal displacement of the standing soles from frame to frame, (T-1, 2), filled through flight."""
     T = len(shift)
@@ -153,12 +156,14 @@ def _smooth(x: FloatArray, reach: int) -> FloatArray:
     return np.column_stack([np.convolve(padded[:, k], kernel, mode="valid") for k in range(x.shape[1])])
 
 
-def _height_offset(soles: list[FloatArray], contact: BoolArray, y: FloatArray, ground: float) -> float:
-    """One height for the whole clip: the median sole in contact lies on the ground."""
-    lows = [foot[..., 1].min(axis=1) + y for foot in soles]
-    standing = [low[contact[:, f]] for f, low in enumerate(lows)]
-    if standing and sum(map(len, standing)):
-        return ground - float(np.median(np.concatenate(standing)))
-    if lows:
-        return ground - float(np.percentile(np.min(lows, axis=0), 5))
-    return 0.0
+def _lifts(soles: Sequence[FloatArray], contact: BoolArray, y: FloatArray, ground: float) -> FloatArray:
+    """Lift of every frame that puts the lowest standing sole on the ground, interpolated through flight."""
+    frames = np.arange(len(y))
+    if not soles:
+        return np.zeros(len(y))
+    lows = np.stack([foot[..., 1].min(axis=1) + y for foot in soles], axis=1)
+    standing = contact.any(axis=1)
+    if not standing.any():
+        return np.full(len(y), ground - float(np.percentile(lows.min(axis=1), 5)))
+    low = np.where(contact, lows, np.inf).min(axis=1)[standing]
+    return np.interp(frames, frames[standing], ground - low)

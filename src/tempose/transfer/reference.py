@@ -131,7 +131,7 @@ def _starts_with_reference(motion: BonePose, rest: BonePose, bones: Bones) -> bo
         return False
     steps = np.degrees(angle_between(motion.turns[:-1], motion.turns[1:])).max(axis=1)
     usual = float(np.percentile(steps[1:], 95))
-    return bool(steps[0] > _JUMP_DEG and steps[0] > 5 * usual and stands_upright(bones, motion.frame(0)))
+    return bool(steps[0] > _JUMP_DEG and steps[0] > 3 * usual and stands_upright(bones, motion.frame(0)))
 
 
 def _doubts(bones: Bones, pose: BonePose, target: BonePose) -> tuple[str, ...]:

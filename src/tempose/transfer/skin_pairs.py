@@ -28,7 +28,7 @@ def pairs_from_skin(
         Mesh with weights.
     mapping : dict of str to str, optional
         Source joint to body role, where the names do not tell.
-    ring_places : tuple of float, default (0.3, 0.7)
+    ring_places : tuple of float, default (0.27, 0.73)
         Where rings lie along a bone.
 
     Returns
@@ -60,7 +60,13 @@ def pairs_from_skin(
     rest = np.asarray(target.skeleton.rest_rotations)
     _, starts, ends = bone_spans(target.skeleton, joints, target_roles, rest, target.skeleton.offsets[0])
     faces, bones = mark_bones(
-        target.mesh.vertices, target.mesh.faces, weights, roles, starts, _mark_ends(roles, starts, ends), ring_places
+        target.mesh.vertices,
+        target.mesh.faces,
+        weights,
+        roles,
+        starts,
+        _mark_ends(roles, starts, ends),
+        ring_places,
     )
     return Pairs(
         "joints",
