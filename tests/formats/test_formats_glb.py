@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tempose.formats import glb
 from tempose.formats.conventions import FormatError
 from tempose.formats.glb_rate import key_rate
+from tempose.kinematics import rest_transforms
 from tempose.kinematics.skinning import bake
 
 STRIP = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 2, 0]], np.float32)
@@ -270,15 +271,42 @@ def test_skinning_agrees_with_a_loop_over_vertices_joints_and_numbers(tmp_path, 
             assert_allclose(clip.vertices[t, v], expected, atol=1e-5)
 
 
-def test_rig_and_joint_motion_give_the_same_frames_as_baking(tmp_path, rng):
-    path = arm(rng)[0].save(tmp_path / "a.glb")
+@pytest.mark.parametrize(
+    "body", ["under the armature", "under the armature, lost", "beside it", "beside it, lost"]
+)
+def test_rig_and_joint_motion_give_the_same_frames_as_baking(tmp_path, rng, body):
+    b, _ = arm(rng)
+    if "beside" in body:
+        b.json["nodes"][0]["children"] = [1]
+        b.json["scenes"] = [{"nodes": [0, 4]}]
+    b.json["nodes"][4]["translation"] = [9, 9, 9] if "lost" in body else [0, 0, 0]
+    path = b.save(tmp_path / "a.glb")
     clip, skin, motion = glb.read_clip(path), glb.read_skin(path), glb.read_skeleton_clip(path)
     assert skin.skeleton.names == motion.skeleton.names == ("upper", "lower", "joint_2")
     assert_allclose(bake(skin, motion), clip.vertices, atol=1e-5)
     assert_allclose(skin.weights.sum(axis=1), 1)
-    # the bind pose stands as the armature does: turned by a right angle, half as big
-    bones = np.linalg.norm(skin.skeleton.offsets[1:], axis=1)
-    assert_allclose(bones, 0.5 * np.array([1.0, np.sqrt(1.25)]), atol=1e-6)
+    # the bind pose stands as the armature does: turned by a right angle about X, half as big
+    _, joints = rest_transforms(skin.skeleton)
+    assert_allclose(np.diff(joints, axis=0), [[0, 0, -0.5], [0, 0.25, -0.5]], atol=1e-6)
+    assert np.linalg.norm(joints.mean(axis=0) - [0, 0.6, -0.5]) < 0.2
+
+
+def test_mirrored_rig_is_skinned_like_any_other(tmp_path, rng):
+    b, _ = arm(rng)
+    b.json["nodes"][0]["scale"] = [-0.5, 0.5, 0.5]
+    path = b.save(tmp_path / "a.glb")
+    posed = bake(glb.read_skin(path), glb.read_skeleton_clip(path))
+    assert_allclose(posed, glb.read_clip(path).vertices, atol=1e-5)
+
+
+def test_quaternions_do_not_jump_between_q_and_minus_q(tmp_path, rng):
+    b, _ = arm(rng)
+    angles = np.linspace(0, 4 * np.pi, 49)
+    b.animate(
+        (1, "rotation", np.arange(49) / 24, [turn([1, 2, 3], a) for a in angles], "LINEAR"), name="spin"
+    )
+    q = glb.read_skeleton_clip(b.save(tmp_path / "a.glb"), "spin").rotations
+    assert ((q[1:] * q[:-1]).sum(axis=-1) > 0.9).all()
 
 
 def test_still_root_takes_over_the_path_of_travelling_hips(tmp_path):

@@ -200,6 +200,14 @@ def test_overflow_is_an_error_not_a_warning(tmp_path):
         refused(tmp_path, b.bytes(), "overflows", read)
 
 
+def test_joints_beyond_all_size_are_an_error(tmp_path):
+    b = rig()
+    for node in b.json["nodes"][:3]:
+        node["scale"] = [1e38, 1e38, 1e38]
+    for read in READERS[1:]:
+        refused(tmp_path, b.bytes(), "overflow", read)
+
+
 def test_singular_bind_matrices_fall_back_to_the_node_or_are_refused(tmp_path):
     b = rig()
     b.json["skins"][0]["inverseBindMatrices"] = b.accessor(np.zeros((3, 4, 4)), "MAT4")

@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.clips import Mesh, MeshClip
 from tempose.formats import glb
+from tempose.formats.glb_targets import unit_normals
 
 EPS = 2.0**-23
 
@@ -197,6 +198,23 @@ def test_moved_normals_are_those_of_the_moved_surface(tmp_path):
         sums[[a, b, c]] += np.cross(q - p, r - p)
     sums[-1] = [0, 0, 1]
     assert_allclose(N, (sums / np.linalg.norm(sums, axis=1, keepdims=True))[vertex_of], atol=1e-5)
+
+
+def test_normals_of_a_compact_basis_fit_those_of_the_frames_best(tmp_path):
+    clip = wave(grid(), 20)
+    glb.write(tmp_path / "a.glb", clip, tolerance=2.0)
+    file = pygltflib.GLTF2().load(tmp_path / "a.glb")
+    primitive = file.meshes[0].primitives[0]
+    vertex_of = decoded(file, primitive.attributes._VERTEX).astype(int)
+    weights = decoded(file, file.animations[0].samplers[0].output).reshape(20, -1).astype(float)
+    targets = np.stack([decoded(file, target["NORMAL"]) for target in primitive.targets])
+    wanted = np.stack([unit_normals(V, clip.faces) for V in clip.vertices]) - unit_normals(
+        clip.rest, clip.faces
+    )
+    missing = wanted[:, vertex_of] - np.tensordot(weights, targets, 1)
+    assert len(targets) < 20
+    # at the minimum of a least-squares problem the residual is orthogonal to its columns
+    assert_allclose(np.tensordot(weights.T, missing, 1), 0, atol=1e-5)
 
 
 def test_file_keeps_the_letter_of_the_format(tmp_path):

@@ -85,7 +85,10 @@ def _binding(doc: Document, nodes: Nodes, skin: Item, world: list[FloatArray], n
     finite = np.isfinite(default).all() and np.isfinite(world[node]).all()
     if not finite or not usable.any():
         raise skin.error("expected joints and bind matrices that can be inverted, found none", "joints")
-    placing = _placing(bind[usable], inverse[usable], default[usable], world[node][0])
+    try:
+        placing = _placing(bind[usable], inverse[usable], default[usable], world[node][0])
+    except np.linalg.LinAlgError:
+        raise skin.error("expected joints of a sensible size, their transforms overflow", "joints") from None
     # a joint without a bind pose of its own stays where its node is
     return Binding(tuple(joints), inverse, placing, np.where(usable[:, None, None], placing @ bind, default))
 
@@ -109,18 +112,23 @@ def _placing(bind: FloatArray, inverse: FloatArray, default: FloatArray, mesh: F
     even = np.abs(turn - turn[0]).max() <= 1e-3 * np.abs(turn[0]).max()
     if even and np.abs(shift - shift[0]).max() <= 1e-3 * (size or 1.0):
         return each.mean(axis=0)
-    p, q = bind[:, :3, 3], default[:, :3, 3]
+    # scale and mirroring are the same in every pose
+    volume = float(np.median(np.linalg.det(turn)))
+    mirror, scale = np.diag([np.sign(volume) or 1.0, 1.0, 1.0]), float(np.cbrt(abs(volume)))
+    p, q = bind[:, :3, 3] @ mirror, default[:, :3, 3]
     spread_p, spread_q = (float(np.linalg.norm(x - x.mean(axis=0))) for x in (p, q))
-    own_scale = float(np.cbrt(np.abs(np.linalg.det(mesh[:3, :3]))))
-    if len(p) < 3 or min(spread_p, spread_q, own_scale) <= 0:
+    if len(p) < 3 or min(spread_p, spread_q, scale) <= 0:
         return mesh
-    scale, R, own = spread_q / spread_p, procrustes_rotation(p, q), polar_rotation(mesh[:3, :3])
-    same_size = 0.8 < scale / own_scale < 1.25
-    if same_size and angle_between(from_matrix(R), from_matrix(own)) < np.pi / 4:
+    R, own = procrustes_rotation(p, q), polar_rotation(mesh[:3, :3] @ mirror)
+    same_size = abs(np.cbrt(np.linalg.det(mesh[:3, :3] @ mirror)) / scale - 1) < 1e-3
+    away = np.linalg.norm(mesh[:3, :3] @ bind[:, :3, 3].mean(axis=0) + mesh[:3, 3] - q.mean(axis=0))
+    close = away < 2 * spread_q / np.sqrt(len(q))
+    if close and same_size and angle_between(from_matrix(R), from_matrix(own)) < np.pi / 4:
         return mesh
     placing = np.eye(4)
-    placing[:3, :3] = (own_scale if same_size else scale) * own @ _nearest_right_angle(own.T @ R)
+    placing[:3, :3] = scale * own @ _nearest_right_angle(own.T @ R)
     placing[:3, 3] = q.mean(axis=0) - placing[:3, :3] @ p.mean(axis=0)
+    placing[:3, :3] = placing[:3, :3] @ mirror
     return placing
 
 
