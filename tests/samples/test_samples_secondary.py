@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -10,11 +12,13 @@ from tempose.clips import Mesh, SkeletonClip, SkinnedMesh
 from tempose.kinematics import forward_kinematics, rest_transforms
 from tempose.kinematics.skinning import bake
 from tempose.rotations import conjugate, rotate
+from tempose.samples.gores import swing_gores
+from tempose.samples.motion_curves import about
 from tempose.samples.oscillators import acceleration, oscillate, oscillator_step
 from tempose.samples.secondary import FLESH, secondary_motion
 from tempose.samples.skeletons import human_skeleton
-from tempose.samples.skirt import measure_skirt, swing_gores
-from tempose.samples.skirt_legs import leg_beads
+from tempose.samples.skirt import measure_skirt
+from tempose.samples.skirt_legs import CLEARANCE, least_angles, leg_beads
 from tempose.samples.walk import walk
 
 HUMAN = human_skeleton()
@@ -194,6 +198,32 @@ def test_gores_follow_a_leg_and_swing_back_when_it_leaves() -> None:
     assert angles[60].min() > 0.38 and angles[:60].max() < 0.45
     assert angles[60:].min() < -0.05
     assert np.abs(angles[-1]).max() < 0.15
+
+
+def test_least_angle_is_that_of_the_tangent_to_a_raised_leg(body) -> None:
+    skin, soft = body
+    wide = measure_skirt(skin.mesh.vertices[soft["skirt"] > 0] - HIPS)
+    ring = replace(wide, slope=wide.slope + 1.0)
+    clip = still(np.zeros((1, 3)))
+    rotations = np.array(clip.rotations)
+    rotations[0, HUMAN.index("left_thigh")] = about("x", -1.0)
+    clip = SkeletonClip(HUMAN, rotations, clip.root_position)
+    angle = least_angles(skin, clip, ring)[0]
+    beads, radii = leg_beads(skin, rotations, clip.root_position)
+    touched = 0
+    for k, direction in enumerate(ring.azimuth):
+        p = beads[0] - ring.centre
+        out = p[:, 0] * np.sin(direction) + p[:, 2] * np.cos(direction) - ring.waist[k]
+        aside = p[:, 0] * np.cos(direction) - p[:, 2] * np.sin(direction)
+        r = radii + CLEARANCE
+        near = (np.abs(aside) < r) & (np.hypot(out, p[:, 1]) < ring.length[k])
+        # distance of each ball's section from the gore's line, positive outside the skirt
+        gap = out * np.cos(angle[k]) + p[:, 1] * np.sin(angle[k]) + np.sqrt(np.maximum(r**2 - aside**2, 0))
+        if near.any():
+            assert gap[near].max() < 1e-9
+            touched += gap[near].max() > -1e-9
+    assert touched > 8
+    assert angle.max() > 0.7
 
 
 def test_legs_stay_inside_the_skirt(body) -> None:
