@@ -58,7 +58,10 @@ def flipped_faces(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: Flo
     """
     wanted = rotate(rotations, face_normals(V_rest, F))
     against = np.sum(wanted * face_normals(V, F), axis=-1) < 0
-    return against & sound_faces(V, F) & sound_faces(V_rest, F)
+    # few faces are ever against: only those are looked at again
+    suspects = np.flatnonzero(against.any(axis=tuple(range(against.ndim - 1))))
+    against[..., suspects] &= sound_faces(V, F[suspects]) & sound_faces(V_rest, F[suspects])
+    return against
 
 
 def flipped_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: FloatArray) -> FloatArray:
@@ -136,7 +139,9 @@ def folded_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, threshold: fl
     for frames in block_slices(len(V), 24 * len(F) + V.shape[1]):
         posed = block(V, frames, "V")
         folded = (_dihedral_dots(posed, F, pairs, sign) < threshold) & unfolded
-        folded &= sound_faces(posed, F)[:, pairs].all(axis=2)
+        suspects = np.flatnonzero(folded.any(axis=0))
+        for side in range(2):
+            folded[:, suspects] &= sound_faces(posed, F[pairs[suspects, side]])
         percent[frames] = 100 * folded.sum(axis=1) / max(len(pairs), 1)
     return percent
 

@@ -30,11 +30,21 @@ def consistent_signs(Q: FloatArray, parents: IntArray) -> FloatArray:
     parent once a limb has turned further than a half turn against it.
     """
     Q = np.array(Q, dtype=np.float64)
-    for b in range(1, Q.shape[1]):
-        p = max(int(parents[b]), 0)
-        relative = multiply(conjugate(Q[:, p]), Q[:, b])
-        steps = np.sum(relative[1:] * relative[:-1], axis=-1)
-        start = 1.0 if relative[0, 0] >= 0 else -1.0
-        sign = start * np.cumprod(np.r_[1.0, np.where(steps < 0, -1.0, 1.0)])
-        Q[:, b] = multiply(Q[:, p], relative * sign[:, None])
+    if len(Q) == 0:
+        return Q
+    parents = np.where(np.asarray(parents) < 0, 0, parents)
+    for level in _levels(parents):
+        relative = multiply(conjugate(Q[:, parents[level]]), Q[:, level])
+        steps = np.where(np.sum(relative[1:] * relative[:-1], axis=-1) < 0, -1.0, 1.0)
+        start = np.where(relative[:1, :, 0] < 0, -1.0, 1.0)
+        Q[:, level] *= np.cumprod(np.concatenate([start, steps]), axis=0)[..., None]
     return Q
+
+
+def _levels(parents: IntArray) -> list[IntArray]:
+    """Bones by depth, the root left out."""
+    depth = np.zeros(len(parents), dtype=np.int64)
+    for b in range(1, len(parents)):
+        depth[b] = depth[parents[b]] + 1
+    order = np.argsort(depth, kind="stable")[1:]
+    return np.split(order, np.flatnonzero(np.diff(depth[order])) + 1) if len(order) else []
