@@ -69,7 +69,7 @@ def rolling(gait: Gait, start: float) -> Roll:
 
     def roll(times: FloatArray) -> tuple[FloatArray, FloatArray]:
         s = (np.asarray(times) - start) / length
-        strike = -gait.landing * rock(1.0 - s / gait.flat[0], 0.7)
+        strike = -gait.landing * rock(1.0 - s / gait.flat[0], 2.0)
         push = gait.push * rock((s - gait.flat[1]) / (1.0 - gait.flat[1]), 2.0)
         toes = gait.toes * np.maximum((s - 0.85) / 0.15, 0.0) ** 3
         return strike + push, toes
