@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -126,9 +128,7 @@ def test_frames_of_a_still_mesh_are_refused(run: Run, frames: Path, tmp_path: Pa
     assert ran.code == 2 and "is still" in ran.err.splitlines()[-1]
 
 
-@pytest.mark.parametrize(
-    "out", ["out.npz", "out", "new/a.####.obj", "out.xyz", "no/such/out.npz", "frames/0.obj/x.npz"]
-)
+@pytest.mark.parametrize("out", ["out", "new/a.####.obj", "out.xyz", "no/such/out.npz", "frames/0.obj/x.npz"])
 def test_failed_writing_leaves_nothing(
     run: Run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out: str
 ) -> None:
@@ -137,12 +137,27 @@ def test_failed_writing_leaves_nothing(
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(Path, "write_bytes", full)
-    monkeypatch.setattr(np, "savez", full)
-    monkeypatch.setattr(np, "savez_compressed", full)
     ran = run("convert", "frames", out)
     assert ran.code == 2
     assert out.split("/")[0] in ran.err.splitlines()[-1]
     assert os.listdir() == ["frames"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no limit on the size of files")
+@pytest.mark.parametrize("out", ["out.npz", "out.npy", "out.glb", "out", "a.####.obj"])
+def test_full_disk_is_one_line_and_leaves_nothing(tmp_path: Path, rng: np.random.Generator, out: str) -> None:
+    V = rng.normal(size=(60, 300, 3))
+    mesh = tempose.Mesh(V[0], np.arange(298)[:, None] + np.arange(3))
+    tempose.save(tmp_path / "clip.npz", MeshClip(V, mesh, 30))
+    code = (
+        "import resource, sys; from tempose.cli import main; "
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
+    )
+    line = [sys.executable, "-B", "-c", code, "convert", "clip.npz", out]
+    ran = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert ran.returncode == 2, ran.stderr
+    assert ran.stderr.splitlines()[-1].startswith(f"tempose: {out}: "), ran.stderr
+    assert "Traceback" not in ran.stderr and os.listdir(tmp_path) == ["clip.npz"]
 
 
 def test_read_only_folder(run: Run, frames: Path, tmp_path: Path) -> None:
@@ -224,6 +239,21 @@ def test_render_writes_the_picture_of_the_library(run: Run, frames: Path, tmp_pa
     assert ran.code == 0 and ran.out == ""
     tempose.render.render([tempose.load(str(frames))], tmp_path / f"library{name}", **options)
     assert (tmp_path / name).read_bytes() == (tmp_path / f"library{name}").read_bytes()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no limit on the size of files")
+def test_film_on_a_full_disk_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("imageio_ffmpeg")
+    code = (
+        "import resource, sys, numpy as np; from tempose.render.video import save_mp4; "
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); "
+        "noise = np.random.default_rng(0).integers(0, 255, (9, 96, 96, 3)).astype(np.uint8); "
+        "save_mp4(noise, sys.argv[1])"
+    )
+    line = [sys.executable, "-B", "-c", code, "film.mp4"]
+    ran = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert ran.returncode == 1 and "film.mp4: the film could not be written whole" in ran.stderr, ran.stderr
+    assert os.listdir(tmp_path) == []
 
 
 def test_json_holds_no_nan() -> None:

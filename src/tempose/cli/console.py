@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import sys
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
@@ -137,11 +136,11 @@ def writing(path: Path) -> Generator[None, None, None]:
     OSError
         What the block raised, with the output named.
     """
-    if str(path).endswith(os.sep):
-        path = Path(str(path).rstrip(os.sep))
     try:
         yield
     except OSError as error:
-        if error.errno is None:
+        if error.errno is not None:
+            raise OSError(error.errno, error.strerror, str(path)) from None
+        if path.name in str(error):
             raise
-        raise OSError(error.errno, error.strerror, str(path)) from None
+        raise OSError(f"{path}: cannot be written, is the disk full? ({error})") from None

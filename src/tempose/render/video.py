@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import subprocess
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,12 @@ import numpy as np
 from tempose._files import atomic_path
 from tempose.render.writers import checked_frames
 from tempose.typing import Progress, silent
+
+# Say which matrix was used, or players guess by the size of the picture and shift the colours.
+_COLOUR = (
+    "-vf scale=out_color_matrix=bt709:out_range=tv -colorspace bt709 -color_primaries bt709 "
+    "-color_trc bt709 -color_range tv"
+).split()
 
 
 def save_mp4(
@@ -43,6 +51,8 @@ def save_mp4(
     ------
     ValueError
         If there is no frame, or one has another size or type.
+    OSError
+        If the file cannot be written whole.
     """
     if not 0 < fps < float("inf"):
         raise ValueError(f"fps must be positive, got {fps}")
@@ -63,13 +73,22 @@ def save_mp4(
                         macro_block_size=2,
                         quality=None,
                         ffmpeg_log_level="error",
-                        output_params=["-crf", str(crf), "-movflags", "+faststart"],
+                        output_params=[*_COLOUR, "-crf", str(crf), "-movflags", "+faststart"],
                     )
                     stream.send(None)
                 stream.send(even.tobytes())
         finally:
             if stream is not None:
                 stream.close()
+        _check_whole(ffmpeg, part, path)
+
+
+def _check_whole(ffmpeg: Any, part: Path, path: str | os.PathLike[str]) -> None:
+    # ffmpeg may end without a word when the disk is full: only reading the film back tells
+    line = [ffmpeg.get_ffmpeg_exe(), "-v", "error", "-i", str(part), "-c", "copy", "-f", "null", "-"]
+    read = subprocess.run(line, stdin=subprocess.DEVNULL, capture_output=True)
+    if read.returncode or read.stderr:
+        raise OSError(f"{path}: the film could not be written whole: is the disk full?")
 
 
 def _ffmpeg() -> Any:
