@@ -22,10 +22,12 @@ def edge_list(F: IntArray) -> IntArray:
     Returns
     -------
     (e, 2) ndarray of int
-        Lower index first, sorted.
+        Lower index first, sorted; a face that names a vertex twice gives no edge from it to itself.
     """
-    edges = np.sort(np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
-    return np.unique(edges, axis=0)
+    key, base = _edge_keys(F)
+    ordered = np.sort(key[key % (base + 1) != 0])
+    unique = ordered[np.diff(ordered, prepend=-1) != 0]
+    return np.column_stack([unique // base, unique % base]).astype(F.dtype)
 
 
 def boundary_edges(F: IntArray) -> IntArray:
@@ -41,9 +43,20 @@ def boundary_edges(F: IntArray) -> IntArray:
     (b, 2) ndarray of int
         In the direction of their face.
     """
-    directed: IntArray = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    _, inverse, count = np.unique(np.sort(directed, axis=1), axis=0, return_inverse=True, return_counts=True)
-    return directed[count[inverse.ravel()] == 1]
+    key, base = _edge_keys(F)
+    _, inverse, count = np.unique(key, return_inverse=True, return_counts=True)
+    alone = (count[inverse.ravel()] == 1) & (key % (base + 1) != 0)
+    return np.column_stack([F.T.ravel(), np.roll(F, -1, axis=1).T.ravel()])[alone]
+
+
+def _edge_keys(F: IntArray) -> tuple[IntArray, int]:
+    """One number for each of the 3 m edges, the same in both directions: sorting numbers beats sorting rows.
+
+    The key is ``low * base + high``; an edge from a vertex to itself is a multiple of ``base + 1``.
+    """
+    base = int(F.max(initial=0)) + 1
+    a, b = F.T.ravel().astype(np.int64), np.roll(F, -1, axis=1).T.ravel().astype(np.int64)
+    return np.minimum(a, b) * base + np.maximum(a, b), base
 
 
 def vertex_adjacency(F: IntArray, n: int) -> Any:

@@ -63,8 +63,10 @@ class SparseCholesky:
         except RuntimeError as error:
             raise ValueError(_not_definite(f"SuperLU: {error}")) from None
         diagonal = lu.U.diagonal()
-        if not np.array_equal(lu.perm_r, lu.perm_c) or not (diagonal > 0).all():
-            raise ValueError(_not_definite(f"smallest pivot {diagonal.min():.3g}"))
+        # what elimination leaves of a singular matrix is rounding error of either sign
+        share = diagonal[lu.perm_c] / np.maximum(A.diagonal(), 1e-300)
+        if not np.array_equal(lu.perm_r, lu.perm_c) or not share.min() > 10 * self.n * np.finfo(float).eps:
+            raise ValueError(_not_definite(f"smallest pivot {share.min():.3g} of its diagonal entry"))
         self._lu = lu
         if self.backend == "numba":
             self.indptr, self.indices, self.data = strictly_lower(lu.L)
@@ -77,7 +79,15 @@ class SparseCholesky:
         from cholespy import CholeskySolverD, MatrixType  # pyright: ignore
 
         coo = A.tocoo()
-        self._solver = CholeskySolverD(self.n, coo.row, coo.col, coo.data, MatrixType.COO)
+        try:
+            self._solver = CholeskySolverD(self.n, coo.row, coo.col, coo.data, MatrixType.COO)
+        except ValueError as error:
+            raise ValueError(_not_definite(f"CHOLMOD: {error}")) from None
+        # its pivots are out of reach: an answer far larger than the question betrays a singular matrix
+        unit = np.sqrt(np.abs(A.diagonal()))
+        growth = np.abs(unit * self.solve(unit)).max()
+        if not growth < 1e13:
+            raise ValueError(_not_definite(f"condition number over {growth:.3g}"))
 
     def solve(self, b: FloatArray) -> FloatArray:
         """Solve ``A x = b``.

@@ -73,7 +73,7 @@ def strictly_lower(L: Any) -> tuple[IntArray, IntArray, FloatArray]:
     indptr, indices, data : ndarray
         CSC arrays of the strictly lower part, rows ascending in each column.
     """
-    L = L.tocsc()
+    L = L.tocsc(copy=True)
     L.setdiag(0.0)
     L.eliminate_zeros()
     L.sort_indices()
