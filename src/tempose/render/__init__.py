@@ -1,10 +1,12 @@
 """Pictures, films and reports, on any machine: no display, no graphics card, no OpenGL."""
 
 from tempose.render.camera import Camera
+from tempose.render.charts import line_chart
 from tempose.render.colors import RAMPS, ramp_colors
 from tempose.render.film import film, render, turntable
 from tempose.render.follow import clip_cameras
 from tempose.render.frame import render_frame
+from tempose.render.report import Cell, Chart, Figure, Numbers, Paragraph, Section, Table, html_report
 from tempose.render.sheet import contact_sheet
 from tempose.render.subject import ground_level
 from tempose.render.themes import DARK, LIGHT, Theme
@@ -18,11 +20,20 @@ __all__ = [
     "NAMED_VIEWS",
     "RAMPS",
     "Camera",
+    "Cell",
+    "Chart",
+    "Figure",
+    "Numbers",
+    "Paragraph",
+    "Section",
+    "Table",
     "Theme",
     "clip_cameras",
     "contact_sheet",
     "film",
     "ground_level",
+    "html_report",
+    "line_chart",
     "ramp_colors",
     "render",
     "render_frame",

@@ -104,8 +104,9 @@ def render_frame(
     ValueError
         If an argument has another shape, is not finite or out of range.
     """
-    V = as_floats(V, "V", ("n", 3))
-    F = as_indices(F, "F", ("m", 3), limit=len(V))
+    # Copies: compiled code would be compiled once more for arrays that refuse writes.
+    V = np.array(as_floats(V, "V", ("n", 3)), order="C")
+    F = np.array(as_indices(F, "F", ("m", 3), limit=len(V)), order="C")
     width, height = _checked_size(size)
     tone, work = theme_named(theme), quality_named(quality)
     N = corner_normals(V, F, crease)

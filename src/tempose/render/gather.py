@@ -147,7 +147,7 @@ def _gather_shared(pixel, depth, points, normals, light, dirs, weights, kind, fr
             m = normals[j]
             same = n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.97
             if same and abs(depth[j] - depth[k]) < 0.004 * abs(depth[k]):
-                light[k] = light[j]
+                light[k, 0], light[k, 1], light[k, 2] = light[j, 0], light[j, 1], light[j, 2]
                 found = True
                 break
         if not found:

@@ -31,6 +31,10 @@ class Quality:
     resolution: int
     """Pixels of a depth map along each axis."""
 
+    def __post_init__(self) -> None:
+        if self.samples < 1 or self.key < 1 or self.sky < 3 or self.resolution < 16:
+            raise ValueError(f"a quality needs at least samples=1, key=1, sky=3, resolution=16, got {self}")
+
 
 QUALITIES = {
     "draft": Quality(samples=1, key=2, sky=15, resolution=144),
