@@ -19,8 +19,11 @@ from tempose.clips.mesh_parts import keep_faces
 from tempose.formats import FormatError, load, load_mesh, ply, save
 
 KINDS = ["obj", "text.ply", "ply", "big.ply", "off", "npz", "npy"]
-WORDS = [b"", b"-", b"0", b"-1", b"1", b"3", b"4", b"nan", b"inf", b"1e308", b"1e-320", b"99999999999999999999",
-         b"2147483647", b"-2147483649", b"65536", b"/", b"//", b"1/1", b"#", b"\\\n", b"f", b"v", b"list", b"x" * 99]  # fmt: skip
+WORDS = [
+    *(b"", b"-", b"/", b"//", b"1/1", b"#", b"\\\n", b"f", b"v", b"list", b"x" * 99, b"nan", b"inf"),
+    *(b"0", b"-1", b"1", b"3", b"4", b"65536", b"2147483647", b"-2147483649", b"99999999999999999999"),
+    *(b"1e308", b"1e-320", b"1e999"),
+]
 NUMBER = re.compile(rb"-?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
 
 
@@ -112,15 +115,21 @@ def apply(data: bytes, steps: list[tuple[str, float, float, bytes]]) -> bytes:
 def check(folder: Path, kind: str, data: bytes, topology: Mesh) -> None:
     path = folder / f"x.{kind}"
     path.write_bytes(data)
-    try:
-        loaded = load(path, topology=topology)
-    except FormatError as error:
-        assert str(path) in str(error)
-        assert "\n" not in str(error) and len(str(error)) < 600
+    loaded, message = load_or_message(path, topology)
+    if loaded is None:
+        assert str(path) in message
+        assert "\n" not in message and len(message) < 600
         return
     mesh = loaded.mesh if isinstance(loaded, MeshClip) else loaded
     assert len(mesh.faces) and np.isfinite(loaded.vertices).all()
     assert mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices)
+
+
+def load_or_message(path: Path, topology: Mesh | None = None) -> tuple[Mesh | MeshClip | None, str]:
+    try:
+        return load(path, topology=topology), ""
+    except FormatError as error:
+        return None, str(error)
 
 
 def peak_bytes() -> int:
@@ -146,7 +155,7 @@ def test_intact_seeds_load(kind, folder):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(steps=damage())
 def test_a_damaged_file_is_read_or_refused(kind, folder, steps):
     run(kind, "made", folder, steps)
@@ -154,7 +163,7 @@ def test_a_damaged_file_is_read_or_refused(kind, folder, steps):
 
 @pytest.mark.real
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(steps=damage())
 def test_a_damaged_real_file_is_read_or_refused(kind, folder, data_folder, steps):
     run(kind, "base.obj", folder, steps, data_folder("makehuman-base"))
@@ -169,7 +178,7 @@ def test_a_damaged_export_of_another_program_is_read_or_refused(folder, data_fol
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(data=st.binary(max_size=300))
 def test_garbage_is_refused(kind, folder, data):
     head = {"obj": b"v ", "off": b"OFF ", "npz": b"PK\x03\x04", "npy": b"\x93NUMPY\1\0"}.get(kind, b"ply\n")
@@ -177,7 +186,7 @@ def test_garbage_is_refused(kind, folder, data):
         check(folder, kind, prefix + data, small_mesh("made", None))
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(steps=damage(), kind=st.sampled_from(["obj", "ply", "off"]))
 def test_a_damaged_frame_of_a_sequence_is_read_or_refused(folder, steps, kind):
     data = seed(kind, "made")
@@ -185,9 +194,8 @@ def test_a_damaged_frame_of_a_sequence_is_read_or_refused(folder, steps, kind):
     frames.mkdir(exist_ok=True)
     (frames / f"0.{kind}").write_bytes(data)
     (frames / f"1.{kind}").write_bytes(apply(data, steps))
-    try:
-        clip = load(frames)
-    except FormatError as error:
-        assert str(frames) in str(error)
+    clip, message = load_or_message(frames)
+    if clip is None:
+        assert str(frames) in message
     else:
         assert clip.vertices.shape == (2, 9, 3) and np.isfinite(clip.vertices).all()

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from tempose.clips import Mesh, MeshClip
 from tempose.formats import FormatError, load, load_clip, load_mesh, save
+from tempose.formats._number_kernel import read_floats
 from tempose.formats._numbers import NumberError, parse_floats, split_lines, tokens_per_line
 
 CUBE_CORNERS = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
@@ -138,19 +140,39 @@ def test_round_trip_is_exact_in_any_unit_and_axis(tmp_path, rng, unit, up):
     assert first.source.guessed == ()
 
 
-@settings(max_examples=50)
-@given(
-    st.lists(
-        st.one_of(
-            st.floats(allow_nan=False, allow_infinity=False).map(repr),
-            st.from_regex(r"[+-]?[0-9]{1,25}(\.[0-9]{0,25})?([eE][+-]?[0-9]{1,2})?", fullmatch=True),
-        ),
-        min_size=1,
-        max_size=12,
-    )
-)
-def test_numbers_are_those_of_python(words):
-    assert_array_equal(parse_floats(" ".join(words).encode()), [float(word) for word in words])
+def decimals(rng, n: int) -> list[str]:
+    """Decimal numbers of every length, some of them next to the middle between two doubles."""
+    a = 10.0 ** rng.integers(-9, 9, n) * rng.standard_normal(n)
+    words = [f"{x:.{d}{kind}}" for x, d, kind in zip(a, rng.integers(0, 22, n), rng.choice(list("efg"), n))]
+    x = rng.uniform(0.5, 4, n)
+    middle = [(Fraction(p) + Fraction(q)) / 2 for p, q in zip(x.tolist(), np.nextafter(x, 9).tolist())]
+    words += [f"{m.numerator * 10**18 // m.denominator}e-18" for m in middle]
+    words += [str(m.numerator // (m.denominator >> 40)) + f"e{k % 40 - 30}" for k, m in enumerate(middle)]
+    return words + [
+        "0",
+        "-0",
+        "+1.5",
+        ".5",
+        "5.",
+        "1E5",
+        "1e-400",
+        "123456789012345678901234567890.5",
+        "9" * 18,
+    ]
+
+
+@pytest.mark.parametrize("reader", [parse_floats, read_floats])
+def test_numbers_are_those_of_python_to_the_last_bit(reader, rng):
+    words = decimals(rng, 4000)
+    assert_array_equal(reader(" ".join(words).encode()), [float(word) for word in words])
+    assert np.signbit(reader(b"-0 -0.0e5 0\n")).tolist() == [True, True, False]
+    assert reader(b" \n ").shape == (0,)
+
+
+@given(st.lists(st.floats(allow_nan=False, allow_infinity=False).map(repr), min_size=1, max_size=12))
+def test_numbers_of_any_size_are_those_of_python(words):
+    for reader in (parse_floats, read_floats):
+        assert_array_equal(reader("\n".join(words).encode()), [float(word) for word in words])
 
 
 @given(st.text(alphabet="ab \t\r\n", max_size=60))
@@ -164,6 +186,7 @@ def test_words_and_lines_are_those_of_python(text):
 def test_words_that_are_no_numbers_are_refused(word):
     with pytest.raises(NumberError):
         parse_floats(f"1 2 {word} 3".encode())
+    assert read_floats(f"1 2 {word} 3".encode()) is None
 
 
 @pytest.mark.parametrize(
@@ -249,12 +272,12 @@ def test_a_writer_that_fails_leaves_nothing(tmp_path, rng, monkeypatch, target):
             raise OSError(28, "No space left on device")
         return real(self, data)
 
-    def full_archive(stream, **arrays):
-        stream.write(b"PK")
+    def full_archive(stream, array, **options):
+        stream.write(b"half")
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full_disk)
-    monkeypatch.setattr(np, "savez", full_archive)
+    monkeypatch.setattr(np.lib.format, "write_array", full_archive)
     with pytest.raises(OSError, match="No space"):
         save(tmp_path / target, thing)
     assert list(tmp_path.iterdir()) == []

@@ -181,7 +181,10 @@ def test_a_bad_file_names_itself_the_place_and_the_expectation(tmp_path, old, ne
     assert "\n" not in str(caught.value)
 
 
-OFF = "OFF # house\n5 4 0\n\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 2 .25\n4 0 1 2 3 255 0 0\n3 3 2 4\n3 0 3 4\n5 0 1 2 4 3\n"
+OFF = (
+    "OFF # house\n5 4 0\n\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 2 .25\n"
+    "4 0 1 2 3 255 0 0\n3 3 2 4\n3 0 3 4\n5 0 1 2 4 3\n"
+)
 
 
 def test_off_comes_and_goes(tmp_path):

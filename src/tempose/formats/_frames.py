@@ -107,7 +107,10 @@ def find_frames(path: str) -> Frames | None:
         siblings = place.parent.iterdir() if place.parent.is_dir() else ()
         return _checked(path, [p for p in siblings if shape.fullmatch(p.name)], "a pattern")
     if glob.has_magic(path):
-        return _checked(path, [Path(p) for p in glob.glob(path)], "a glob")
+        # brackets in the names of folders that exist are no wildcards
+        known = place.parent.is_dir()
+        found = place.parent.glob(place.name) if known else map(Path, glob.glob(path))
+        return _checked(path, list(found), "a glob")
     return None
 
 
@@ -130,7 +133,7 @@ def _checked(path: str, found: list[Path], kind: str) -> Frames:
 def _gaps(files: list[Path]) -> tuple[str, ...]:
     """Note missing numbers when all names differ in one number only."""
     split = [re.fullmatch(r"(.*?)([0-9]+)([^0-9]*)", p.stem) for p in files]
-    if len({(m[1].rstrip("0"), m[3]) for m in split if m}) != 1 or not all(split):
+    if len({(m[1], m[3]) for m in split if m}) != 1 or not all(split):
         return ()
     numbers = {int(m[2]) for m in split if m}
     missing = max(numbers) - min(numbers) + 1 - len(numbers)

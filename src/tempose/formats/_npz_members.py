@@ -26,18 +26,24 @@ _DEFLATE_LIMIT = 1032
 """Deflate never expands more than this, so a member that claims more lies (zlib technical details)."""
 
 
-def read_members(path: str) -> dict[str, Any]:
-    """Read all arrays of a ``.npz`` archive.
+def read_members(path: str, keys: tuple[str, ...], prefix: str) -> tuple[dict[str, Any], list[str]]:
+    """Read the arrays of a ``.npz`` archive that have known names.
 
     Parameters
     ----------
     path : str
         File to read.
+    keys : tuple of str
+        Names of arrays to read; others are left alone.
+    prefix : str
+        Arrays whose name begins so are read too.
 
     Returns
     -------
-    dict of str to ndarray
+    arrays : dict of str to ndarray
         Arrays by name.
+    names : list of str
+        Names of all arrays, read or not.
 
     Raises
     ------
@@ -48,14 +54,19 @@ def read_members(path: str) -> dict[str, Any]:
     try:
         with zipfile.ZipFile(path) as archive:
             arrays: dict[str, Any] = {}
+            names: list[str] = []
             size = Path(path).stat().st_size
             for info in archive.infolist():
                 name = info.filename
+                key = name.removesuffix(".npy")
+                names.append(key)
+                if key not in keys and not key.startswith(prefix):
+                    continue
                 if not 0 <= info.file_size <= _DEFLATE_LIMIT * min(info.compress_size, size) + 64:
                     raise ValueError(f"states {info.file_size} bytes, more than the file can hold")
                 with archive.open(info) as stream:
-                    arrays[name.removesuffix(".npy")] = _read_array(stream, info.file_size)
-            return arrays
+                    arrays[key] = _read_array(stream, info.file_size)
+            return arrays, names
     except OSError as error:
         raise FormatError(unreadable(path, error)) from None
     except _BROKEN as error:
@@ -88,6 +99,22 @@ def read_single(path: str) -> Any:
         raise FormatError(unreadable(path, error)) from None
     except _BROKEN as error:
         raise FormatError(f"{path}: expected a numpy array (.npy): {_one_line(error)}") from None
+
+
+def write_members(stream: IO[bytes], arrays: dict[str, Any]) -> None:
+    """Write arrays as a ``.npz`` archive, the same bytes for the same arrays.
+
+    Parameters
+    ----------
+    stream : binary file
+        Where to write.
+    arrays : dict of str to ndarray
+        Arrays by name; none may hold Python objects.
+    """
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in arrays.items():
+            with archive.open(zipfile.ZipInfo(name + ".npy"), "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
 
 
 def _read_array(stream: IO[bytes], size: int) -> Any:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+import sys
 import warnings
 from dataclasses import dataclass
+from importlib import import_module
 
 import numpy as np
 
@@ -12,6 +14,8 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 _SPACE = 32
 _NEWLINE = 10
+_KERNEL = "tempose.formats._number_kernel"
+_WORTH_COMPILER = 16_000_000
 _COMMENT = re.compile(rb"#[^\n]*")
 
 
@@ -147,7 +151,22 @@ def parse_floats(block: bytes) -> FloatArray:
     NumberError
         If a word is no number.
     """
-    return _parse(block, np.float64)
+    use_kernel_for(len(block))
+    kernel = sys.modules.get(_KERNEL)
+    values = None if kernel is None else kernel.read_floats(block)
+    return _parse(block, np.float64) if values is None else values
+
+
+def use_kernel_for(size: int) -> None:
+    """Import the compiled reader if there is enough text to pay for loading the compiler.
+
+    Parameters
+    ----------
+    size : int
+        Bytes of text about to be read.
+    """
+    if size > _WORTH_COMPILER:
+        import_module(_KERNEL)
 
 
 def parse_ints(block: bytes) -> IntArray:

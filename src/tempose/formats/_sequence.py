@@ -11,6 +11,7 @@ import numpy as np
 
 from tempose.clips import Mesh, MeshClip
 from tempose.formats._frames import Frames, split_counter
+from tempose.formats._numbers import use_kernel_for
 from tempose.formats._place import DEFAULT_FPS, inside, settle
 from tempose.formats.conventions import FormatError
 from tempose.typing import Progress
@@ -91,6 +92,7 @@ def read_sequence(
     """
     module, names = still_module(frames.suffix), [str(p) for p in frames.paths]
     progress(0, len(names), "reading frames")
+    use_kernel_for(sum(p.stat().st_size for p in frames.paths))
     first = _guarded(names[0], module.read_first, names[0])
     mesh = settle(first.mesh, path, frames.suffix[1:], up, unit, first.notes + frames.notes)
     if mesh.name == frames.paths[0].stem:

@@ -14,12 +14,14 @@ import numpy as np
 
 from tempose._files import atomic_path
 from tempose.clips import Mesh, MeshClip
-from tempose.formats._npz_members import read_members, read_single
+from tempose.formats._npz_members import read_members, read_single, write_members
 from tempose.formats._place import DEFAULT_FPS, inside, metres_per_unit, outside, settle
 from tempose.formats._table import Unit
 from tempose.formats.conventions import FormatError
 
 _GROUP = "group:"
+_MESH_KEYS = ("uv", "uv_faces", "colors", "polygons")
+_KEYS = ("vertices", "faces", "fps", "up", "unit", "rest", "source_fps", "name", *_MESH_KEYS)
 
 
 def read_npz(path: str, up: str | None, unit: Unit, fps: float | None) -> Mesh | MeshClip:
@@ -42,10 +44,10 @@ def read_npz(path: str, up: str | None, unit: Unit, fps: float | None) -> Mesh |
     FormatError
         If an array is missing, broken or of another shape.
     """
-    arrays = read_members(path)
+    arrays, names = read_members(path, _KEYS, _GROUP)
     for key in ("vertices", "faces"):
         if key not in arrays:
-            raise FormatError(f"{path}: expected arrays 'vertices' and 'faces', found {_listing(arrays)}")
+            raise FormatError(f"{path}: expected arrays 'vertices' and 'faces', found {_listing(names)}")
     try:
         return _assemble(path, arrays, up, unit, fps)
     except FormatError:
@@ -115,7 +117,7 @@ def write(path: str, thing: Mesh | MeshClip, up: str, unit: float) -> None:
             np.save(stream, vertices, allow_pickle=False)
         else:
             arrays = {"vertices": vertices} | _extras(thing, up, unit)
-            np.savez(stream, allow_pickle=False, **arrays)
+            write_members(stream, arrays)
 
 
 def _extras(thing: Mesh | MeshClip, up: str, unit: float) -> dict[str, Any]:
@@ -125,7 +127,7 @@ def _extras(thing: Mesh | MeshClip, up: str, unit: float) -> dict[str, Any]:
         arrays |= {"fps": np.array(thing.fps), "rest": outside(mesh.vertices, up, unit)}
         if thing.source.fps is not None:
             arrays["source_fps"] = np.array(thing.source.fps)
-    for key in ("uv", "uv_faces", "colors", "polygons"):
+    for key in _MESH_KEYS:
         if getattr(mesh, key) is not None:
             arrays[key] = getattr(mesh, key)
     if mesh.name:
@@ -138,7 +140,7 @@ def _assemble(
 ) -> Mesh | MeshClip:
     vertices = _positions(path, arrays["vertices"])
     rest = _positions(path, arrays.get("rest", vertices if vertices.ndim == 2 else vertices[0]))
-    optional = {k: arrays[k] for k in ("uv", "uv_faces", "colors", "polygons") if k in arrays}
+    optional = {k: arrays[k] for k in _MESH_KEYS if k in arrays}
     groups = {k.removeprefix(_GROUP): v for k, v in arrays.items() if k.startswith(_GROUP)}
     name = str(arrays["name"]) if "name" in arrays else Path(path).stem
     raw = Mesh(rest, arrays["faces"], **optional, groups=groups, name=name)
@@ -176,5 +178,5 @@ def _number(path: str, arrays: dict[str, Any], key: str) -> float:
     return float(array.reshape(()))
 
 
-def _listing(arrays: dict[str, Any]) -> str:
-    return ", ".join(repr(k) for k in list(arrays)[:8]) or "no array"
+def _listing(names: list[str]) -> str:
+    return ", ".join(repr(name) for name in names[:8]) or "no array"

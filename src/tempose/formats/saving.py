@@ -48,7 +48,8 @@ def save(
     """
     check_arguments(up, unit, None)
     place = os.fspath(path)
-    suffix = Path(place).suffix.lower()
+    is_folder = place.endswith(("/", os.sep)) or Path(place).is_dir()
+    suffix = "" if is_folder else Path(place).suffix.lower()
     if suffix == ".glb":
         return import_module("tempose.formats.glb").write(place, thing)
     source = thing.source
@@ -61,7 +62,9 @@ def save(
     if suffix in SEQUENCE_SUFFIXES:
         return write_still(Path(place), _one_frame(place, thing), up, metres)
     known = ", ".join(k for k, f in FORMATS.items() if f.writes)
-    raise FormatError(f"{place}: cannot write {suffix or 'a file without ending'!r}; known are {known}")
+    raise FormatError(
+        f"{place}: cannot write {suffix or 'a mesh to a name without ending'}; known are {known}"
+    )
 
 
 def _one_frame(place: str, thing: Mesh | MeshClip) -> Mesh:
