@@ -13,7 +13,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.clips import Mesh, MeshClip
 from tempose.formats import glb
-from tempose.formats.glb_targets import unit_normals
+from tempose.formats.glb_normals import UnitNormals
+from tempose.geometry import vertex_normals
 
 EPS = 2.0**-23
 
@@ -200,6 +201,14 @@ def test_moved_normals_are_those_of_the_moved_surface(tmp_path):
     assert_allclose(N, (sums / np.linalg.norm(sums, axis=1, keepdims=True))[vertex_of], atol=1e-5)
 
 
+@pytest.mark.parametrize("unit", [1e-20, 1.0, 1e18])
+def test_normals_agree_with_those_of_the_geometry_package(unit):
+    mesh = grid()
+    N = UnitNormals(mesh.faces, len(mesh.vertices))(mesh.vertices * unit + 100 * unit)
+    assert_allclose(N[:-1], vertex_normals(mesh.vertices, mesh.faces)[:-1], atol=1e-5)
+    assert_array_equal(N[-1], [0, 0, 1])
+
+
 def test_normals_of_a_compact_basis_fit_those_of_the_frames_best(tmp_path):
     clip = wave(grid(), 20)
     glb.write(tmp_path / "a.glb", clip, tolerance=2.0)
@@ -208,9 +217,8 @@ def test_normals_of_a_compact_basis_fit_those_of_the_frames_best(tmp_path):
     vertex_of = decoded(file, primitive.attributes._VERTEX).astype(int)
     weights = decoded(file, file.animations[0].samplers[0].output).reshape(20, -1).astype(float)
     targets = np.stack([decoded(file, target["NORMAL"]) for target in primitive.targets])
-    wanted = np.stack([unit_normals(V, clip.faces) for V in clip.vertices]) - unit_normals(
-        clip.rest, clip.faces
-    )
+    normals = UnitNormals(clip.faces, len(clip.rest))
+    wanted = np.stack([normals(V) for V in clip.vertices]) - normals(clip.rest)
     missing = wanted[:, vertex_of] - np.tensordot(weights, targets, 1)
     assert len(targets) < 20
     # at the minimum of a least-squares problem the residual is orthogonal to its columns

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.clips import MeshClip
-from tempose.geometry import vertex_normals
-from tempose.typing import FloatArray, IntArray, Progress
+from tempose.formats.glb_normals import UnitNormals
+from tempose.typing import FloatArray, Progress
 
 
 @dataclass(frozen=True)
@@ -36,26 +36,6 @@ class Targets:
     """Root of the mean squared distance, metres."""
 
 
-def unit_normals(V: FloatArray, F: IntArray) -> FloatArray:
-    """Vertex normals that are unit everywhere, as glTF wants them.
-
-    Parameters
-    ----------
-    V : (n, 3) float
-        Vertices.
-    F : (m, 3) int
-        Faces.
-
-    Returns
-    -------
-    (n, 3) ndarray of float64
-        Area-weighted normals; +Z where there is none.
-    """
-    N = vertex_normals(V.astype(np.float64), F)
-    N[~N.any(axis=1)] = [0.0, 0.0, 1.0]
-    return N
-
-
 def frame_targets(clip: MeshClip, progress: Progress) -> Targets:
     """One target for every frame that differs from the rest pose and from all frames before it.
 
@@ -72,7 +52,8 @@ def frame_targets(clip: MeshClip, progress: Progress) -> Targets:
         Without loss but for float32: an offset is rounded to 24 bits.
     """
     T = clip.n_frames
-    rest, N = clip.rest.astype(np.float32), unit_normals(clip.rest, clip.faces)
+    rest, normals = clip.rest.astype(np.float32), UnitNormals(clip.faces, len(clip.rest))
+    N = normals(clip.rest)
     known: dict[bytes, int] = {}
     frames: list[int] = []
     column = np.full(T, -1)
@@ -96,15 +77,11 @@ def frame_targets(clip: MeshClip, progress: Progress) -> Targets:
     return Targets(
         weights,
         lambda k: clip.vertices[frames[k]] - rest,
-        lambda k: _normal_offset(clip, frames[k], N),
+        lambda k: normals(clip.vertices[frames[k]]) - N,
         tuple(f"frame_{t}" for t in frames),
         float(np.sqrt(largest)),
         float(np.sqrt(squares / (T * len(rest)))),
     )
-
-
-def _normal_offset(clip: MeshClip, t: int, N: FloatArray) -> FloatArray:
-    return (unit_normals(clip.vertices[t], clip.faces) - N).astype(np.float32)
 
 
 def basis_targets(clip: MeshClip, tolerance: float, progress: Progress) -> Targets:
@@ -187,8 +164,9 @@ def _fitted_normals(clip: MeshClip, weights: FloatArray) -> FloatArray:
 
     The columns of the weights are orthogonal, so each target is a plain projection.
     """
-    N = unit_normals(clip.rest, clip.faces)
+    normals = UnitNormals(clip.faces, len(clip.rest))
+    N = normals(clip.rest)
     result = np.zeros((weights.shape[1], *N.shape))
     for t in range(clip.n_frames):
-        result += weights[t, :, None, None] * (unit_normals(clip.vertices[t], clip.faces) - N)
+        result += weights[t, :, None, None] * (normals(clip.vertices[t]) - N)
     return (result / np.maximum((weights**2).sum(axis=0), 1e-30)[:, None, None]).astype(np.float32)

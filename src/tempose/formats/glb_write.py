@@ -20,7 +20,8 @@ from tempose.clips import Mesh, MeshClip
 from tempose.formats.glb_buffer import INDEX_DATA, VERTEX_DATA, AnyArray, Buffer
 from tempose.formats.glb_container import write_container
 from tempose.formats.glb_layout import Layout, lay_out, mesh_extras
-from tempose.formats.glb_targets import Targets, basis_targets, frame_targets, unit_normals
+from tempose.formats.glb_normals import UnitNormals
+from tempose.formats.glb_targets import Targets, basis_targets, frame_targets
 from tempose.typing import Progress, silent
 
 _MOST_EXACT = 2**24
@@ -143,7 +144,7 @@ def _head(mesh: Mesh, layout: Layout, buffer: Buffer) -> dict[str, Any]:
     """Describe the still mesh in JSON, its arrays queued in `buffer`."""
     k = len(layout.vertex_of)
     V = mesh.vertices.astype(np.float32)[layout.vertex_of]
-    N = unit_normals(mesh.vertices, mesh.faces).astype(np.float32)[layout.vertex_of]
+    N = UnitNormals(mesh.faces, len(mesh.vertices))(mesh.vertices)[layout.vertex_of]
     attributes = {
         "POSITION": buffer.add(lambda: V, (k, 3), VERTEX_DATA, bounds=True),
         "NORMAL": buffer.add(lambda: N, (k, 3), VERTEX_DATA),
