@@ -26,19 +26,16 @@ def group_sets(mesh: Mesh, counts: IntArray) -> tuple[IntArray, list[tuple[str, 
     sets : list of tuple of str
         Names of every set; set 0 is always the empty one.
     """
-    p = len(counts)
-    triangles = counts - 2
-    first_triangle = np.cumsum(triangles) - triangles
-    numbers = np.zeros(p, np.int64)
+    polygon, is_first = polygon_of_triangle(counts), np.ones(len(mesh.faces), np.bool_)
+    is_first[1:] = polygon[1:] != polygon[:-1]
+    numbers = np.zeros(len(counts), np.int64)
     sets: list[tuple[str, ...]] = [()]
     for name, members in mesh.groups.items():
-        inside = np.zeros(len(mesh.faces), np.bool_)
-        inside[members] = True
+        inside = np.unique(polygon[members[is_first[members]]])
         # every set splits in two: those of its polygons that are in this group, and the rest
-        chosen = inside[first_triangle]
-        for old in np.unique(numbers[chosen]).tolist():
-            numbers[chosen & (numbers == old)] = len(sets)
-            sets.append((*sets[old], name))
+        old, new = np.unique(numbers[inside], return_inverse=True)
+        numbers[inside] = len(sets) + new
+        sets += [(*sets[k], name) for k in old.tolist()]
     used, numbers = np.unique(np.append(0, numbers), return_inverse=True)
     return numbers[1:], [sets[k] for k in used.tolist()]
 

@@ -76,6 +76,26 @@ def polygon_of_triangle(counts: IntArray) -> IntArray:
     return np.repeat(np.arange(len(counts)), counts - 2)
 
 
+def triangles_of_polygons(polygons: IntArray, counts: IntArray) -> IntArray:
+    """List the triangles that some polygons were cut into.
+
+    Parameters
+    ----------
+    polygons : (k,) int
+        Which polygons.
+    counts : (p,) int
+        Corners of every polygon.
+
+    Returns
+    -------
+    (q,) ndarray of int
+        Their triangles, in order.
+    """
+    first = (np.cumsum(counts - 2) - (counts - 2))[polygons]
+    each = counts[polygons] - 2
+    return np.repeat(first - (np.cumsum(each) - each), each) + np.arange(int(each.sum()))
+
+
 def _fan_places(counts: IntArray) -> tuple[IntArray, IntArray]:
     polygon = polygon_of_triangle(counts)
     begins = np.cumsum(counts) - counts

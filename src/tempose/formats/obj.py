@@ -11,7 +11,7 @@ from tempose.formats._input import excerpt, read_bytes
 from tempose.formats._numbers import Lines, NumberError, parse_floats, split_lines, tokens_per_line
 from tempose.formats._obj_faces import keyword_rows, read_corners, read_groups
 from tempose.formats._obj_text import encoder
-from tempose.formats._polygons import fan, polygon_of_triangle
+from tempose.formats._polygons import fan, triangles_of_polygons
 from tempose.formats._topology import Frame, other_counts, same_topology
 from tempose.formats.conventions import FormatError
 from tempose.typing import FloatArray, IntArray
@@ -158,10 +158,4 @@ def _groups(lines: Lines, is_face: np.ndarray, counts: IntArray) -> tuple[dict[s
     if not found:
         found = read_groups(lines, is_face, b"o") if len(objects) > 1 else {}
         found |= read_groups(lines, is_face, b"usemtl")
-    polygon = polygon_of_triangle(counts)
-    triangles = {}
-    for group, members in found.items():
-        chosen = np.zeros(len(counts), np.bool_)
-        chosen[members] = True
-        triangles[group] = np.flatnonzero(chosen[polygon])
-    return triangles, name
+    return {group: triangles_of_polygons(np.unique(p), counts) for group, p in found.items()}, name
