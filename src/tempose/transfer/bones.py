@@ -145,30 +145,32 @@ def bone_spans(
     tips = np.asarray(skeleton.tips)
     role_of = {joint: role for role, joint in roles.items()}
     for b, j in enumerate(int(j) for j in joints):
-        last = _end_joint(skeleton, j, role_of.get(j, ""), roles, rest)
+        role = role_of.get(j, "")
+        following = _next_joint(skeleton, j, role, roles, rest)
+        last = _far_descendant(skeleton, j, rest, role) if following is None else following
         ends[..., b, :] = positions[..., last, :]
-        if not skeleton.children(last).size and np.isfinite(tips[last]).all():
+        # a forearm ends at the wrist: the tip of a hand that is a leaf is the hand's
+        if following is None and not skeleton.children(last).size and np.isfinite(tips[last]).all():
             ends[..., b, :] += rotate(world[..., last, :], tips[last])
     return world[..., joints, :], starts, ends
 
 
-def _end_joint(skeleton: Skeleton, j: int, role: str, roles: dict[str, int], rest: FloatArray) -> int:
+def _next_joint(skeleton: Skeleton, j: int, role: str, roles: dict[str, int], rest: FloatArray) -> int | None:
+    """Joint of the bone that follows j, None where its own descendants tell where it ends."""
     side, part = split_role(role)
     shortest = 1e-3 * float(np.ptp(rest, axis=0).max())
     for following in NEXT_ROLES.get(part, ()):
         k = roles.get(side + following)
         if k is not None and np.linalg.norm(rest[k] - rest[j]) > shortest:
             return k
-    if part in ("hand", "foot", "toes", "head") or not role:
-        return _far_descendant(skeleton, j, rest, role)
-    return j
+    children = skeleton.children(j)
+    return int(children[0]) if not role and len(children) == 1 else None
 
 
 def _far_descendant(skeleton: Skeleton, j: int, rest: FloatArray, role: str) -> int:
-    """Joint below j at which its bone ends: the child for a plain chain, else the farthest below."""
-    children = skeleton.children(j)
-    if not role and len(children) == 1:
-        return int(children[0])
+    """Joint below j that is farthest from it, for parts that carry others with them; else j."""
+    if role and split_role(role)[1] not in ("hand", "foot", "toes", "head"):
+        return j
     below = [j]
     for k in range(j + 1, skeleton.n_joints):
         if int(skeleton.parents[k]) in below:

@@ -157,7 +157,7 @@ def _smooth(x: FloatArray, reach: int) -> FloatArray:
 
 
 def _lifts(soles: Sequence[FloatArray], contact: BoolArray, y: FloatArray, ground: float) -> FloatArray:
-    """Lift of every frame that puts the lowest standing sole on the ground, interpolated through flight."""
+    """Lift that puts the lowest sole on the ground while a foot stands, interpolated through flight."""
     frames = np.arange(len(y))
     if not soles:
         return np.zeros(len(y))
@@ -165,5 +165,6 @@ def _lifts(soles: Sequence[FloatArray], contact: BoolArray, y: FloatArray, groun
     standing = contact.any(axis=1)
     if not standing.any():
         return np.full(len(y), ground - float(np.percentile(lows.min(axis=1), 5)))
-    low = np.where(contact, lows, np.inf).min(axis=1)[standing]
+    # the lower of both soles, standing or about to land: a heel must not sink before its toe is in contact
+    low = lows.min(axis=1)[standing]
     return np.interp(frames, frames[standing], ground - low)
