@@ -9,8 +9,8 @@ import numpy as np
 
 from tempose.typing import FloatArray
 
-BLOCK_VALUES = 2_000_000
-"""Numbers held in one block: 16 MB as float64, and a few times that while a block is worked on."""
+BLOCK_VALUES = 500_000
+"""Numbers held in one block: 4 MB as float64, so that most of it stays in the cache."""
 
 
 def check_clip(V: Any, name: str) -> Any:

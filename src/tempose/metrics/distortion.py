@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from tempose._validate import as_floats, as_indices
-from tempose.geometry import edge_list, face_areas
+from tempose.geometry import edge_list
 from tempose.metrics._frames import block, block_slices, check_clip
 from tempose.metrics._tails import UpperTail
+from tempose.metrics._triangles import area_vectors, coordinates, differences, dot
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 
@@ -73,7 +74,8 @@ def edge_ratios(
         edges = edges[_mask(vertices, len(V_rest), "vertices")[edges].all(axis=1)]
 
     def lengths(frames: FloatArray) -> FloatArray:
-        return np.linalg.norm(frames[..., edges[:, 0], :] - frames[..., edges[:, 1], :], axis=-1)
+        edge = differences(coordinates(frames), edges[:, 0], edges[:, 1])
+        return np.sqrt(dot(edge, edge))
 
     return _ratios(V, lengths, lengths(V_rest), 6 * len(edges), "edge")
 
@@ -104,7 +106,12 @@ def area_ratios(V: FloatArray, F: IntArray, V_rest: FloatArray, *, faces: BoolAr
     """
     V, F, V_rest = _check(V, F, V_rest)
     F = _masked_faces(F, faces)
-    return _ratios(V, lambda frames: face_areas(frames, F), face_areas(V_rest, F), 12 * len(F), "face")
+
+    def areas(frames: FloatArray) -> FloatArray:
+        N, _ = area_vectors(coordinates(frames), F)
+        return np.sqrt(dot(N, N)) / 2
+
+    return _ratios(V, areas, areas(V_rest), 12 * len(F), "face")
 
 
 def _ratios(

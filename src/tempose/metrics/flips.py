@@ -7,34 +7,11 @@ from typing import Any
 import numpy as np
 
 from tempose._validate import as_floats, as_indices
-from tempose.geometry import face_areas, face_normals
 from tempose.metrics._frames import block, block_slices, check_clip
-from tempose.rotations import rotate
+from tempose.metrics._triangles import Vectors, area_vectors, coordinates, cross, dot, take
 from tempose.typing import BoolArray, FloatArray, IntArray
 
-_SLIVER = 1e-10  # area over squared longest edge below which a normal is noise
-
-
-def sound_faces(V: FloatArray, F: IntArray) -> BoolArray:
-    """Faces whose normal means something.
-
-    Parameters
-    ----------
-    V : (..., n, 3) float
-        Vertices.
-    F : (m, 3) int
-        Faces.
-
-    Returns
-    -------
-    (..., m) ndarray of bool
-        False for faces that are degenerate to rounding.
-    """
-    corners = [V[..., F[:, k], :] for k in range(3)]
-    longest = np.max(
-        [np.square(a - b).sum(axis=-1) for a, b in zip(corners, corners[1:] + corners[:1])], axis=0
-    )
-    return face_areas(V, F) > _SLIVER * longest
+_SLIVER = 2e-10  # double area over squared longest edge below which a normal is noise
 
 
 def flipped_faces(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: FloatArray) -> BoolArray:
@@ -56,12 +33,30 @@ def flipped_faces(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: Flo
     (..., m) ndarray of bool
         False for faces degenerate at rest or posed.
     """
-    wanted = rotate(rotations, face_normals(V_rest, F))
-    against = np.sum(wanted * face_normals(V, F), axis=-1) < 0
-    # few faces are ever against: only those are looked at again
-    suspects = np.flatnonzero(against.any(axis=tuple(range(against.ndim - 1))))
-    against[..., suspects] &= sound_faces(V, F[suspects]) & sound_faces(V_rest, F[suspects])
-    return against
+    rest, sound_at_rest = _normals(V_rest, F)
+    posed, sound = _normals(V, F)
+    return (dot(_rotate(rotations, rest), posed) < 0) & sound & sound_at_rest
+
+
+def _normals(V: FloatArray, F: IntArray) -> tuple[Vectors, BoolArray]:
+    """Find normals as long as twice the area, and which of them are more than rounding."""
+    N, longest = area_vectors(coordinates(V), F)
+    return N, dot(N, N) > np.square(_SLIVER * longest)
+
+
+def _unit_normals(V: FloatArray, F: IntArray) -> Vectors:
+    N, sound = _normals(V, F)
+    scale = 1 / np.sqrt(np.where(sound, dot(N, N), np.inf))
+    return N[0] * scale, N[1] * scale, N[2] * scale
+
+
+def _rotate(q: FloatArray, v: Vectors) -> Vectors:
+    w, x, y, z = (q[..., k] for k in range(4))
+    u = (x, y, z)
+    t = cross(u, v)
+    t = (2 * t[0], 2 * t[1], 2 * t[2])
+    s = cross(u, t)
+    return v[0] + w * t[0] + s[0], v[1] + w * t[1] + s[1], v[2] + w * t[2] + s[2]
 
 
 def flipped_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: FloatArray) -> FloatArray:
@@ -91,7 +86,7 @@ def flipped_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: F
     V, F, V_rest = _check(V, F, V_rest)
     if np.shape(rotations) != (len(V), len(F), 4):
         raise ValueError(f"rotations must have shape ({len(V)}, {len(F)}, 4), got {np.shape(rotations)}")
-    counted = max(int(sound_faces(V_rest, F).sum()), 1)
+    counted = max(int(_normals(V_rest, F)[1].sum()), 1)
     percent = np.zeros(len(V))
     for frames in block_slices(len(V), 24 * len(F) + V.shape[1]):
         turns = as_floats(rotations[frames], "rotations", ("T", len(F), 4))
@@ -132,27 +127,24 @@ def folded_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, threshold: fl
     """
     V, F, V_rest = _check(V, F, V_rest)
     pairs, sign = _face_pairs(F)
-    sound = sound_faces(V_rest, F)[pairs].all(axis=1)
+    sound = _normals(V_rest, F)[1][pairs].all(axis=1)
     pairs, sign = pairs[sound], sign[sound]
-    unfolded = _dihedral_dots(V_rest, F, pairs, sign) >= threshold
+    unfolded = ~_folded(V_rest, F, pairs, sign, threshold)
     percent = np.zeros(len(V))
     for frames in block_slices(len(V), 24 * len(F) + V.shape[1]):
-        posed = block(V, frames, "V")
-        folded = (_dihedral_dots(posed, F, pairs, sign) < threshold) & unfolded
-        suspects = np.flatnonzero(folded.any(axis=0))
-        for side in range(2):
-            folded[:, suspects] &= sound_faces(posed, F[pairs[suspects, side]])
+        folded = _folded(block(V, frames, "V"), F, pairs, sign, threshold) & unfolded
         percent[frames] = 100 * folded.sum(axis=1) / max(len(pairs), 1)
     return percent
 
 
-def _dihedral_dots(V: FloatArray, F: IntArray, pairs: IntArray, sign: FloatArray) -> FloatArray:
-    N = face_normals(V, F)
-    return sign * np.sum(N[..., pairs[:, 0], :] * N[..., pairs[:, 1], :], axis=-1)
+def _folded(V: FloatArray, F: IntArray, pairs: IntArray, sign: FloatArray, threshold: float) -> BoolArray:
+    N = _unit_normals(V, F)
+    # a degenerate face has a zero normal here, which is folded against nothing
+    return sign * dot(take(N, pairs[:, 0]), take(N, pairs[:, 1])) < threshold
 
 
 def _face_pairs(F: IntArray) -> tuple[IntArray, FloatArray]:
-    """Faces on both sides of every edge that has exactly two, and -1 where their orientations disagree."""
+    """Find both faces of every edge that has exactly two, and -1 where their orientations disagree."""
     a, b = F.ravel(), np.roll(F, -1, axis=1).ravel()
     key = np.minimum(a, b).astype(np.int64) * (int(F.max(initial=0)) + 1) + np.maximum(a, b)
     order = np.argsort(key, kind="stable")

@@ -11,6 +11,7 @@ from tempose._validate import as_floats, as_indices
 from tempose.geometry import face_components
 from tempose.metrics._closing import Caps, close_holes
 from tempose.metrics._frames import block, block_slices, check_clip
+from tempose.metrics._triangles import coordinates, cross, dot, take
 from tempose.typing import FloatArray, IntArray
 
 _NOTHING = 1e-9  # volume over cubed diagonal below which a surface encloses nothing
@@ -162,13 +163,9 @@ def _sum_tetrahedra(V: Any, F: IntArray, labels: IntArray, count: int) -> FloatA
 
 def _tetrahedra(V: FloatArray, F: IntArray, caps: Caps) -> FloatArray:
     # near the origin the tetrahedra are small, so that little is lost when they cancel
-    V = V - V.mean(axis=1, keepdims=True)
-    apices = np.stack([caps.apex @ frame for frame in V])[:, caps.hole]
-    a, b, c = (V[:, F[:, k]] for k in range(3))
-    fans = np.cross(V[:, caps.edges[:, 0]], V[:, caps.edges[:, 1]])
-    return (
-        np.concatenate(
-            [np.sum(np.cross(a, b) * c, axis=-1), np.sum(fans * apices, axis=-1) * caps.times], axis=1
-        )
-        / 6
-    )
+    X = coordinates(V - V.mean(axis=1, keepdims=True))
+    a, b, c = (take(X, F[:, k]) for k in range(3))
+    start, end = take(X, caps.edges[:, 0]), take(X, caps.edges[:, 1])
+    x, y, z = ((caps.apex @ coordinate.T).T[:, caps.hole] for coordinate in X)
+    fans = dot(cross(start, end), (x, y, z)) * caps.times
+    return np.concatenate([dot(cross(a, b), c), fans], axis=1) / 6
