@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
+from tempose.clips import Mesh, SkeletonClip, SkinnedMesh
 from tempose.formats import load_clip, load_mesh, load_skeleton_clip, load_skin
 from tempose.metrics import compare
 from tempose.render import contact_sheet, save_png
@@ -124,11 +124,22 @@ def row(name: str, result: TransferResult, volume: float) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-HEAD = (
-    "| pair | inner edges | frames | direction mean / max ° | flipped % | folded % | edges p1 / p99 | volume mean /"
-    " worst % | skate, source's % H/s | sinks cm | min q | set-up s + a frame | goal: direction · edges · volume ·"
-    " skate |\n|" + "---|" * 13
+COLUMNS = (
+    "pair",
+    "inner edges",
+    "frames",
+    "direction mean / max °",
+    "flipped %",
+    "folded %",
+    "edges p1 / p99",
+    "volume mean / worst %",
+    "skate (source's) % H/s",
+    "sinks cm",
+    "min q",
+    "set-up s + a frame",
+    "goal: direction · edges · volume · skate",
 )
+HEAD = "| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS)
 
 
 def sheet(name: str, result: TransferResult) -> None:

@@ -208,4 +208,4 @@ def _load_glb(
             return glb.read_skeleton_clip(place, clip, fps, up=up, unit=metres)
         except FormatError:
             raise error from None
-    return moving if moving.n_frames > 1 else moving.mesh
+    return moving if moving.n_frames > 1 else moving.mesh.with_vertices(moving.vertices[0])

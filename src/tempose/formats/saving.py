@@ -51,7 +51,9 @@ def save(
     is_folder = place.endswith(("/", os.sep)) or Path(place).is_dir()
     suffix = "" if is_folder else Path(place).suffix.lower()
     if suffix == ".glb":
-        return import_module("tempose.formats.glb").write(place, thing)
+        metres = metres_per_unit(unit)
+        import_module("tempose.formats.glb").write(place, thing, up=up, unit=metres, progress=progress)
+        return None
     source = thing.source
     up, metres = up or source.up, metres_per_unit(unit) or source.unit
     is_pattern = split_counter(Path(place).name) is not None and suffix in SEQUENCE_SUFFIXES

@@ -65,8 +65,8 @@ def vertex_areas(V: FloatArray, F: IntArray) -> FloatArray:
     (n,) ndarray
         Areas; they sum to the area of the mesh.
     """
-    areas: FloatArray = np.bincount(F.ravel(), np.repeat(face_areas(V, F) / 3, 3), minlength=len(V))
-    return areas
+    areas = np.bincount(F.ravel(), np.repeat(face_areas(V, F) / 3, 3), minlength=len(V))
+    return areas.astype(np.float64)
 
 
 def vertex_normals(V: FloatArray, F: IntArray) -> FloatArray:

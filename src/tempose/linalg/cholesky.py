@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from tempose.linalg.triangular import scatter_rows, solve_ldl, strictly_lower
+from tempose.linalg.triangular import scatter_rows, solve_ldl, solve_ldl_3, strictly_lower
 from tempose.typing import FloatArray
 
 Backend = Literal["numba", "splu", "cholespy"]
@@ -127,8 +127,19 @@ class SparseCholesky:
             return x
         x = np.zeros(b.shape)
         scatter_rows(b, self.permutation, x)
-        solve_ldl(self.indptr, self.indices, self.data, self.inverse_diagonal, x)
+        self.solve_ordered(x)
         return x[self.permutation]
+
+    def solve_ordered(self, X: FloatArray) -> None:
+        """Solve in place for right-hand sides already in the order of the factor; backend "numba" only.
+
+        Parameters
+        ----------
+        X : (n, k) ndarray, C-contiguous float64
+            Row ``permutation[i]`` belongs to unknown i, before and after.
+        """
+        kernel = solve_ldl_3 if X.shape[1] == 3 else solve_ldl
+        kernel(self.indptr, self.indices, self.data, self.inverse_diagonal, X)
 
 
 def _check_symmetric(A: Any) -> None:

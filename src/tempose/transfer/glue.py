@@ -10,7 +10,6 @@ import scipy.sparse as sp
 
 from tempose.geometry import cotangent_laplacian, cotangents, edge_laplacian
 from tempose.linalg import SparseCholesky
-from tempose.linalg.triangular import solve_ldl
 from tempose.transfer._kernels import add_edge_fragments, add_face_fragments
 from tempose.transfer.links import ExtraEdges
 from tempose.typing import FloatArray, IntArray
@@ -74,8 +73,7 @@ class PoissonGlue:
         add_face_fragments(ordered, self._F, self._edges, self._weights, rhs)
         if len(self._pairs):
             add_edge_fragments(ordered, self._pairs, self._vectors, self._pair_weights, rhs)
-        s = self._solver
-        solve_ldl(s.indptr, s.indices, s.data, s.inverse_diagonal, rhs.reshape(n, 3 * K))
+        self._solver.solve_ordered(rhs.reshape(n, 3 * K))
         return rhs[self._place].transpose(2, 0, 1)
 
     def solve_blocks(
