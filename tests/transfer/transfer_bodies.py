@@ -101,9 +101,9 @@ def _distance(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
 _RADII = {
     "hips": 0.13,
     "spine": 0.13,
-    "chest": 0.12,
-    "neck": 0.06,
-    "head": 0.09,
+    "chest": 0.1,
+    "neck": 0.065,
+    "head": 0.085,
     "thigh": 0.075,
     "shin": 0.055,
 }
@@ -128,7 +128,7 @@ def inflate(skeleton: Skeleton, step: float = 0.03) -> SkinnedMesh:
     mesh = Mesh(low + _smoothed(V, F) * step, F)
     weights = np.zeros((len(V), skeleton.n_joints))
     for j, a, b in bones:
-        near = (_distance(mesh.vertices, a, b) / _radius(skeleton.names[j]) + 0.05) ** -8.0
+        near = (_distance(mesh.vertices, a, b) + 0.005) ** -8.0
         weights[:, j] = np.maximum(weights[:, j], near)
     return SkinnedMesh(mesh, skeleton, weights / weights.sum(axis=1, keepdims=True))
 
