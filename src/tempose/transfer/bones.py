@@ -7,23 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.clips import Skeleton
-from tempose.kinematics import forward_kinematics
+from tempose.kinematics import BoneEnd, bone_ends, forward_kinematics
 from tempose.rotations import rotate
 from tempose.typing import FloatArray, IntArray
-
-NEXT_ROLES = {
-    "hips": ("spine", "chest", "neck", "head"),
-    "spine": ("chest", "neck", "head"),
-    "chest": ("neck", "head"),
-    "neck": ("head",),
-    "clavicle": ("upper_arm",),
-    "upper_arm": ("forearm", "hand"),
-    "forearm": ("hand",),
-    "thigh": ("shin", "foot"),
-    "shin": ("foot", "toes"),
-    "foot": ("toes",),
-}
-"""Role to the roles at whose joint its bone may end, the nearest first."""
 
 
 @dataclass(frozen=True)
@@ -135,45 +121,29 @@ def bone_spans(
     turns : (..., B, 4) ndarray
         World rotations.
     starts, ends : (..., B, 3) ndarray
-        Metres. A bone ends at the joint of the next role, at its farthest descendant, or at its tip;
-        an end equal to the start means that none is known.
+        Metres. A bone ends at the joint of the next role, at a child, or at its tip; an end equal to the
+        start means that none is known.
     """
     world, positions = forward_kinematics(skeleton, rotations, root_position)
-    rest = forward_kinematics(skeleton, np.asarray(skeleton.rest_rotations), skeleton.offsets[0])[1]
     starts = positions[..., joints, :]
     ends = np.array(starts)
-    tips = np.asarray(skeleton.tips)
+    of_role = bone_ends(skeleton, roles)
     role_of = {joint: role for role, joint in roles.items()}
     for b, j in enumerate(int(j) for j in joints):
-        role = role_of.get(j, "")
-        following = _next_joint(skeleton, j, role, roles, rest)
-        last = _far_descendant(skeleton, j, rest, role) if following is None else following
-        ends[..., b, :] = positions[..., last, :]
-        # a forearm ends at the wrist: the tip of a hand that is a leaf is the hand's
-        if following is None and not skeleton.children(last).size and np.isfinite(tips[last]).all():
-            ends[..., b, :] += rotate(world[..., last, :], tips[last])
+        end = of_role.get(role_of[j]) if j in role_of else _plain_end(skeleton, j)
+        if end is None:
+            continue
+        ends[..., b, :] = positions[..., end.end, :]
+        if end.tip is not None:
+            ends[..., b, :] += rotate(world[..., end.end, :], end.tip)
     return world[..., joints, :], starts, ends
 
 
-def _next_joint(skeleton: Skeleton, j: int, role: str, roles: dict[str, int], rest: FloatArray) -> int | None:
-    """Joint of the bone that follows j, None where its own descendants tell where it ends."""
-    side, part = split_role(role)
-    shortest = 1e-3 * float(np.ptp(rest, axis=0).max())
-    for following in NEXT_ROLES.get(part, ()):
-        k = roles.get(side + following)
-        if k is not None and np.linalg.norm(rest[k] - rest[j]) > shortest:
-            return k
+def _plain_end(skeleton: Skeleton, j: int) -> BoneEnd | None:
+    """End of a bone without a role: its only child, the farthest of several, or its tip."""
     children = skeleton.children(j)
-    return int(children[0]) if not role and len(children) == 1 else None
-
-
-def _far_descendant(skeleton: Skeleton, j: int, rest: FloatArray, role: str) -> int:
-    """Joint below j that is farthest from it, for parts that carry others with them; else j."""
-    if role and split_role(role)[1] not in ("hand", "foot", "toes", "head"):
-        return j
-    below = [j]
-    for k in range(j + 1, skeleton.n_joints):
-        if int(skeleton.parents[k]) in below:
-            below.append(k)
-    reach = np.linalg.norm(rest[below] - rest[j], axis=1)
-    return below[int(reach.argmax())]
+    if len(children):
+        reach = np.linalg.norm(skeleton.offsets[children], axis=1)
+        return BoneEnd(j, int(children[reach.argmax()]))
+    tip = np.asarray(skeleton.tips)[j]
+    return BoneEnd(j, j, tip) if np.isfinite(tip).all() else None
