@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
-from tempose.clips import Mesh, MeshClip
-from tempose.formats import FormatError, load, load_clip, load_mesh, save
+from tempose.clips import Mesh, MeshClip, Source
+from tempose.formats import UNITS, FormatError, load, load_clip, load_mesh, save
 from tempose.formats._number_kernel import read_floats
 from tempose.formats._numbers import NumberError, parse_floats, split_lines, tokens_per_line
+from tempose.formats._place import inside, outside
 
 CUBE_CORNERS = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
@@ -148,8 +149,22 @@ def decimals(rng, n: int) -> list[str]:
     middle = [(Fraction(p) + Fraction(q)) / 2 for p, q in zip(x.tolist(), np.nextafter(x, 9).tolist())]
     words += [f"{m.numerator * 10**18 // m.denominator}e-18" for m in middle]
     words += [str(m.numerator // (m.denominator >> 40)) + f"e{k % 40 - 30}" for k, m in enumerate(middle)]
+    words += [str(2**53 + k) for k in range(9)] + [f"{2**52 + k}.5" for k in range(9)]
     odd = ["0", "-0", "+1.5", ".5", "5.", "1E5", "1e-400", "123456789012345678901234567890.5", "9" * 18]
     return words + odd
+
+
+@pytest.mark.parametrize("unit", [*UNITS.values(), 0.37, 3.0])
+@pytest.mark.parametrize("up", ["x", "y", "z"])
+def test_what_came_from_a_file_goes_back_to_the_same_numbers(rng, unit, up):
+    V = inside(rng.standard_normal((20_000, 3)), Source(up=up, unit=unit), "x")
+    assert_array_equal(inside(outside(V, up, unit), Source(up=up, unit=unit), "x"), V)
+
+
+def test_a_polygon_is_in_a_group_if_its_first_triangle_is(tmp_path):
+    save(tmp_path / "x.obj", cube(groups={"first": [0, 2, 3], "second": [1, 5]}))
+    groups = load_mesh(tmp_path / "x.obj").groups
+    assert {k: v.tolist() for k, v in groups.items()} == {"first": [0, 1, 2, 3]}
 
 
 @pytest.mark.parametrize("reader", [parse_floats, read_floats])
@@ -299,7 +314,9 @@ def test_frames_may_write_equal_faces_in_other_words(tmp_path):
 def test_gaps_in_the_numbers_are_noted(tmp_path):
     for k in (1, 2, 5):
         write(tmp_path, VERTICES + "f 1 2 3\n", f"f_{k:03d}.obj")
-    assert load(tmp_path).source.notes == ("2 of the frames 1 to 5 are missing",)
+    source = load(tmp_path).source
+    assert source.notes == ("2 of the frames 1 to 5 are missing",)
+    assert source.guessed == ("up", "unit", "fps")
 
 
 def test_hidden_files_of_a_folder_are_no_frames(tmp_path):

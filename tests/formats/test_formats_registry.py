@@ -129,6 +129,10 @@ def test_axis_unit_and_rate_are_those_stated_else_guessed(tmp_path, suffix):
     stated = load_mesh(path, up="z", unit="in")
     assert (stated.source.up, stated.source.unit, stated.source.guessed) == ("z", 0.0254, ())
     assert_allclose(stated.vertices, (V * 170 * 0.0254)[:, [0, 2, 1]] * [1, 1, -1])
+    flat = V * [170, 0, 1.7]
+    save(tmp_path / "flat.obj", TETRAHEDRON.with_vertices(flat))
+    assert load_mesh(tmp_path / "flat.obj", up="z").source.unit == 1.0
+    assert load_mesh(tmp_path / "flat.obj", up="x").source.unit == 0.01
     assert_array_equal(load_mesh(path, unit=2.5).vertices, V * 170 * 2.5)
     clip = load_clip(path, fps=25)
     assert clip.fps == 25 and clip.n_frames == 1

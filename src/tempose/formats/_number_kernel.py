@@ -99,7 +99,6 @@ def _scan(text: np.ndarray, i: int) -> tuple[np.uint64, int, bool, bool, int]:
                 exponent -= point
             else:
                 dropped = True
-                exponent += not point
         i += 1
     if i < n and digits and (text[i] == 101 or text[i] == 69):
         i += 1

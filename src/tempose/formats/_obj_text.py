@@ -94,8 +94,6 @@ def _group_runs(mesh: Mesh, counts: IntArray) -> list[tuple[int, int, str]]:
     numbers, sets = group_sets(mesh, counts)
     begins = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist()]
     opening = [" ".join(["g", *map(_word, sets[numbers[b]])]) + "\n" for b in begins]
-    if not sets[numbers[0]]:
-        opening[0] = ""
     return list(zip(begins, [*begins[1:], p], opening))
 
 

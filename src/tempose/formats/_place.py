@@ -132,7 +132,7 @@ def inside(V: FloatArray, source: Source, path: str) -> FloatArray:
 
 
 def outside(V: FloatArray, up: str, unit: float) -> FloatArray:
-    """Convert positions back so that reading them again gives the very same numbers where any can.
+    """Convert positions back; what `inside` made of a file's numbers comes in again as the same.
 
     Parameters
     ----------
@@ -148,11 +148,4 @@ def outside(V: FloatArray, up: str, unit: float) -> FloatArray:
     (..., 3) ndarray of float64
         As the file wants them.
     """
-    V = np.asarray(V, dtype=np.float64)
-    turned = to_file(V, up, 1.0)
-    result = turned / unit
-    for neighbour in (np.inf, -np.inf):
-        # division then multiplication may miss by one step in the last place: take the step back
-        other = np.nextafter(result, neighbour)
-        result = np.where((result * unit != turned) & (other * unit == turned), other, result)
-    return result
+    return to_file(np.asarray(V, dtype=np.float64), up, unit)
