@@ -259,3 +259,16 @@ def test_gltf_bvh_amc_and_makehuman_go_through_the_same_door(data_folder):
         load_skin(human / "default_weights.mhw")
     body = load_mesh(human / "base.obj", group="body")
     assert load_skin(human / "default_weights.mhw", mesh=body).weights.shape == (13380, 163)
+
+
+def test_glb_goes_through_save_and_load(tmp_path):
+    clip = MeshClip(np.stack([V, V + 0.25, V + 0.5]), TETRAHEDRON, 24, Source(up="z", unit=0.01))
+    seen: list[int] = []
+    save(tmp_path / "x.glb", clip, progress=lambda done, total, stage: seen.append(done))
+    back = load(tmp_path / "x.glb")
+    assert_allclose(back.vertices, clip.vertices, atol=1e-6)
+    assert_array_equal(back.faces, TETRAHEDRON.faces)
+    assert back.fps == 24 and seen
+    with pytest.raises(ValueError, match="up"):
+        save(tmp_path / "y.glb", clip, up="z")
+    assert [p.name for p in tmp_path.iterdir()] == ["x.glb"]

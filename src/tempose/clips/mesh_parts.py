@@ -6,8 +6,6 @@ import difflib
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from tempose.clips.mesh import Mesh
 from tempose.clips.mesh_clip import MeshClip
@@ -145,6 +143,10 @@ def components(F: IntArray, n: int) -> tuple[int, IntArray]:
     label : (n,) ndarray of int
         Piece of every vertex, numbered by first vertex.
     """
+    # half a second to import, and readers need the rest of this file only
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     F = np.asarray(F)
     rows, columns = F[:, [0, 1]].ravel(), F[:, [1, 2]].ravel()
     graph = coo_matrix((np.ones(len(rows), np.bool_), (rows, columns)), shape=(n, n)).tocsr()

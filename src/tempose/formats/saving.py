@@ -33,16 +33,18 @@ def save(
     thing : Mesh or MeshClip
         What to write.
     up : str, optional
-        Up axis of the file; by default that of ``thing.source``. GLB is always Y up.
+        Up axis of the file; by default that of ``thing.source``; GLB has no other than Y.
     unit : str or float, optional
-        Unit of the file; by default that of ``thing.source``. GLB is always metres.
+        Unit of the file; by default that of ``thing.source``; GLB has no other than metres.
     progress : Progress
         Told about every frame.
 
     Raises
     ------
     FormatError
-        If the ending is unknown or cannot hold it.
+        If the ending is unknown or the format cannot hold it.
+    ValueError
+        If GLB is asked for other axes or another unit than its own.
     OSError
         If the place cannot be written.
     """
