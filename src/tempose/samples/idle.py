@@ -29,7 +29,7 @@ from tempose.samples.motion_stances import Stance
 from tempose.samples.motion_timing import frame_times, performed
 from tempose.typing import FloatArray
 
-HANG = (-4.0, 8.0, 12.0, 16.0, 5.0, 0.0)
+HANG = (-4.0, 11.0, 12.0, 16.0, 5.0, 0.0)
 """Degrees of a resting arm, in the order of `ARM`."""
 
 RAISED = (25.0, 72.0, -75.0, 92.0, 0.0, 10.0)

@@ -134,7 +134,7 @@ def _pose(style: JumpStyle, keys: FloatArray, height: float) -> Keyed:
     lean, up = style.lean, style.arms
     arm = {name: constant(degrees) for name, degrees in zip(ARM, (0, 0, 12, 0, 5, 0))}
     arm["flexion"] = keyed(t, (-4, -38, 15, up, 1.05 * up, 0.6 * up, 12, -4))
-    arm["abduction"] = keyed(t, (7, 12, 14, 16, 20, 24, 16, 7))
+    arm["abduction"] = keyed(t, (11, 14, 14, 16, 20, 24, 18, 11))
     arm["elbow"] = keyed(t, (18, 25, 50, 35, 30, 40, 40, 18))
     arm["shrug"] = keyed(t, (0, 0, 4, 18, 18, 8, 2, 0))
     return Keyed(

@@ -47,7 +47,7 @@ class BodyStyle:
     """Mean bend of the elbow."""
     elbow_swing: float = radians(8)
     """The elbow bends as the arm comes forward."""
-    abduction: float = radians(7)
+    abduction: float = radians(11)
     """Arms away from the body."""
     twist: float = radians(12)
     """Upper arms turned inwards."""
