@@ -11,6 +11,7 @@ from tempose.render import DARK, LIGHT, Camera, render_frame
 from tempose.render.colors import to_linear, to_srgb
 from tempose.render.frame import key_direction
 from tempose.render.paint import BOUNCE, KEY, SHEEN, SKY
+from tempose.render.subject import polygon_edges
 from tempose.render.themes import rgb, theme_named
 
 BALL = trimesh.creation.icosphere(subdivisions=4)
@@ -113,6 +114,14 @@ def test_light_follows_the_normal(axis, angle):
     light = to_linear(rgb(DARK.mesh)) * diffuse + (n @ d > 0) * SHEEN * max(n @ half, 0) ** 24
     # Near the terminator part of the key light's cone is below the horizon of the square.
     assert_allclose(picture[20, 20], to_srgb(light) * 255, atol=2 if n @ d > 0.1 else 4)
+
+
+def test_the_back_of_a_surface_is_lit_like_its_front():
+    V, F = square()
+    R = trimesh.transformations.rotation_matrix(0.5, [1, 0.3, 0])[:3, :3]
+    camera = Camera([0, 0, 6], np.eye(3), 0.3)
+    one, other = (render_frame(V @ R.T, G, camera, size=(31, 31), show_back=False) for G in (F, F[:, ::-1]))
+    assert_array_equal(one, other)
 
 
 def test_the_key_light_comes_from_the_upper_left_of_any_view():
@@ -251,6 +260,20 @@ def test_edges_are_drawn_where_triangles_end():
     assert changed[on_diagonal][12:-12].all()
     assert not changed[60, 75:95].any()
     assert not changed[30:45, 45].any()
+
+
+def test_only_the_edges_asked_for_are_drawn():
+    V, F = square()
+    camera = Camera([0, 0, 5], np.eye(3), 0.0, half_height=1.2)
+    options = {"size": (121, 121), "lit": False}
+    plain, quad = (
+        render_frame(V, F, camera, wire=w, **options) for w in (False, polygon_edges(np.array([4])))
+    )
+    changed = (plain != quad).any(axis=2)
+    assert not changed[30:90, 30:90].any()
+    assert changed[60, 10] and changed[60, 110] and changed[10, 60] and changed[110, 60]
+    with pytest.raises(ValueError, match=r"wire must be True, False or of shape \(2, 3\), got \(4, 3\)"):
+        render_frame(V, F, camera, wire=np.ones((4, 3), bool), **options)
 
 
 def test_a_chequerboard_alternates_along_uv():

@@ -70,12 +70,15 @@ def test_a_disc_above_takes_away_its_view_factor():
 def test_shadow_falls_where_the_key_light_throws_it(unit):
     key = np.array([1.0, 1.0, 0.0]) / np.sqrt(2)
     V, F = square(0.5, height=1.0)
-    lights = make_lights(unit * V, F, key, Quality(1, 1, 6, 256))
-    x = np.linspace(-3, 3, 601)
+    # A map of 32 pixels: half of one would move the shadow by 0.01. Points are raised by an offset.
+    lights = make_lights(unit * V, F, key, Quality(1, 1, 6, 32))
+    raised = 1.6 * lights.texel / unit
+    x = np.linspace(-1.5, -0.5, 1001) + raised
     spot = np.column_stack([unit * x, np.zeros_like(x), np.zeros_like(x)])
-    dark = gather(spot, np.repeat(UP, len(x), axis=0), lights)[:, 0] < 0.5
-    assert_allclose(x[dark].mean(), -1.0, atol=0.03)
-    assert_allclose(dark.sum() * 0.01, 0.5, atol=0.04)
+    dark = 1 - gather(spot, np.repeat(UP, len(x), axis=0), lights)[:, 0]
+    place = (x * dark).sum() / dark.sum() - raised
+    assert_allclose(place, -1.0, atol=0.004)
+    assert_allclose(dark.sum() * 0.001, 0.5, atol=0.03)
 
 
 def test_a_lit_surface_does_not_shade_itself():
@@ -102,6 +105,9 @@ def test_floor_shadow_by_strides_agrees_with_every_pixel():
     full, fast = (floor_shadow(spot, 0.0, lights, wanted, size, stride) for stride in (1, 3))
     assert full.max() > 0.8
     assert_allclose(fast, full, atol=0.04)
+    changed = fast != full
+    assert changed.mean() > 0.3
+    assert np.abs(fast - full)[changed].mean() < 0.0015
     slow = gather(np.insert(spot[wanted], 1, 0.0, axis=1), np.repeat(UP, wanted.sum(), axis=0), lights)
     offset_free = 1 - 0.6 * slow[:, 0] - 0.4 * slow[:, 1]
     assert np.abs(offset_free - full[wanted]).mean() < 0.01
@@ -126,3 +132,21 @@ def test_grid_lines_cover_the_pixels_of_whole_metres():
 def test_a_quality_without_light_is_refused(numbers):
     with pytest.raises(ValueError, match="a quality needs at least"):
         Quality(*numbers)
+
+
+def test_grid_lines_are_one_pixel_wide_under_any_camera(rng):
+    # Coverage falls to nothing at one pixel from the line: distance over the local size of a pixel.
+    R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    axes = R * np.sign(np.linalg.det(R))
+    camera = Camera(3 * axes[2] + np.array([0.1, 0, 0.2]), axes, 0.5)
+    size = (90, 70)
+    spot, depth, _, strong = floor_points(camera, size, 0.0, (1.0, 0.2))
+    assert np.isfinite(depth).all()
+    grid = spot.reshape(70, 90, 2)
+    expected = np.zeros((70, 90))
+    for c in range(2):
+        pixel = np.hypot(*np.gradient(grid[..., c]))
+        line = np.clip(1 - np.abs(grid[..., c] - np.round(grid[..., c])) / pixel, 0, 1)
+        expected = np.maximum(expected, line * np.clip((0.25 - pixel) / 0.2, 0, 1))
+    assert expected.max() > 0.9
+    assert_allclose(strong.reshape(70, 90)[1:-1, 1:-1], expected[1:-1, 1:-1], atol=0.02)

@@ -175,6 +175,27 @@ def test_film_gives_the_pictures_of_the_frames():
         assert_array_equal(shot, alone)
 
 
+def test_captions_stand_in_the_lower_left_corner():
+    plain, named = (
+        np.stack(list(film(walk(2, 0.1), size=(160, 120), captions=c, **LOOK))) for c in (False, True)
+    )
+    _, ys, xs = np.nonzero((plain != named).any(axis=3))
+    assert ys.min() > 90 and xs.min() >= 9 and xs.max() < 80
+
+
+def test_the_diagonals_of_quads_are_not_drawn():
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    V = np.array([[x, y, z] for x in (0, 1) for y in (0.5, 1.5) for z in (0, 1)])
+    F = np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
+    options = {"cell": (80, 80), "ground": None, "wire": True, **LOOK}
+    with_, without = (
+        contact_sheet(Mesh(V, F, polygons=p), 1, ("front",), **options).astype(int)
+        for p in (None, np.full(6, 4))
+    )
+    drawn = (np.abs(with_ - without).max(axis=2) > 20).sum()
+    assert 30 < drawn < 300
+
+
 def test_a_turntable_goes_once_round_at_one_distance():
     ball = trimesh.creation.icosphere(subdivisions=3)
     mesh = Mesh(np.asarray(ball.vertices), ball.faces)

@@ -132,7 +132,8 @@ def chart_style() -> str:
         ".chart .grid{stroke:var(--line,#d5d9e0);stroke-width:1}"
         ".chart .curve{fill:none;stroke-width:1.6;stroke-linejoin:round}"
         ".chart .limit{stroke:var(--warning,#7d5f00);stroke-width:1;stroke-dasharray:2 3}"
-        ".chart .limit-name{fill:var(--warning,#7d5f00);paint-order:stroke;stroke:var(--app,#f6f7f9);stroke-width:3px}"
+        ".chart .limit-name{fill:var(--warning,#7d5f00);paint-order:stroke;stroke:var(--app,#f6f7f9);"
+        "stroke-width:3px}"
     )
 
 

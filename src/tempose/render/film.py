@@ -15,7 +15,9 @@ from tempose.render.colors import Picture
 from tempose.render.follow import clip_cameras
 from tempose.render.frame import render_frame
 from tempose.render.sheet import contact_sheet
-from tempose.render.subject import as_clip, floor_level, frame_choice
+from tempose.render.subject import as_clip, floor_level, frame_choice, wire_of
+from tempose.render.text import draw_text
+from tempose.render.themes import rgb, theme_named
 from tempose.render.video import save_mp4
 from tempose.render.workers import in_order
 from tempose.render.writers import save_gif, save_png
@@ -34,6 +36,7 @@ def film(
     track: bool | None = None,
     segments: Any = None,
     points: Any = None,
+    captions: bool = False,
     workers: int | None = None,
     **look: Any,
 ) -> Iterator[Picture]:
@@ -57,6 +60,8 @@ def film(
         Bones drawn over the frames, metres.
     points : (T, p, 3) array_like, optional
         Markers drawn over the frames, metres.
+    captions : bool, default False
+        Whether to write frame number and time into the lower left corner.
     workers : int, optional
         Frames rendered at a time; None for one per core, at most four.
     **look
@@ -80,7 +85,12 @@ def film(
         for key, array in (("lines", segments), ("points", points)):
             if array is not None:
                 options[key] = array[t]
-        return render_frame(clip.vertices[t], clip.faces, path[t], size=size, ground=level, **options)
+        options["wire"] = wire_of(clip.mesh, options.get("wire", False))
+        done = render_frame(clip.vertices[t], clip.faces, path[t], size=size, ground=level, **options)
+        if captions:
+            ink = rgb(theme_named(look.get("theme", "light")).text_2)
+            draw_text(done, f"{t}   {t / clip.fps:.2f} s", (10, size[1] - 8), 13, ink, anchor="ld")
+        return done
 
     chosen = range(clip.n_frames) if frames is None else frame_choice(frames, clip.n_frames)
     yield from in_order(picture, chosen, workers)
@@ -121,6 +131,7 @@ def turntable(
         sRGB pictures.
     """
     clip = as_clip(mesh)
+    look["wire"] = wire_of(clip.mesh, look.get("wire", False))
     level = floor_level(clip, ground)
     V = clip.vertices[0].astype(np.float64)
     centre = (V.min(axis=0) + V.max(axis=0)) / 2

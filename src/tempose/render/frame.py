@@ -16,7 +16,7 @@ from tempose.render.overlay import draw_segments
 from tempose.render.paint import Paint, blend
 from tempose.render.surface import trace
 from tempose.render.themes import Theme, rgb, theme_named
-from tempose.typing import FloatArray
+from tempose.typing import BoolArray, FloatArray
 
 KEY_LIGHT = (-0.72, 0.70, 0.42)
 """Towards the key light in the axes of the camera: from the upper left, over the viewer's shoulder."""
@@ -41,7 +41,7 @@ def render_frame(
     point_size: float = 7.0,
     theme: str | Theme = "light",
     ground: float | None = None,
-    wire: bool = False,
+    wire: Any = False,
     crease: float | None = None,
     lit: bool = True,
     show_back: bool = True,
@@ -83,8 +83,8 @@ def render_frame(
         ``"light"`` or ``"dark"``.
     ground : float, optional
         Height of a floor with shadows and a grid, metres; None for no floor.
-    wire : bool, default False
-        Whether to draw the edges of the triangles.
+    wire : bool or (m, 3) array_like of bool, default False
+        Whether to draw the edges of the triangles; or which, each edge named by the corner across from it.
     crease : float, optional
         Radians: edges sharper than this are shaded sharp. None smooths everything.
     lit : bool, default True
@@ -111,10 +111,13 @@ def render_frame(
     tone, work = theme_named(theme), quality_named(quality)
     N = corner_normals(V, F, crease)
     lights = make_lights(V, F, key_direction(camera), work) if lit else None
-    paint = Paint.checked(V, F, colors, face_colors, uv, uv_faces, checker, wire, show_back, tone)
+    edges = _wired(wire, len(F))
+    paint = Paint.checked(
+        V, F, colors, face_colors, uv, uv_faces, checker, edges is not None, show_back, tone
+    )
     behind, floor_depth = _background(V, camera, (width, height), lights, ground, tone, work)
     picture, depth = behind.copy(), np.full(width * height, np.inf)
-    for samples in trace(V, F, N, camera, (width, height), work.samples):
+    for samples in trace(V, F, N, camera, (width, height), work.samples, edges):
         shaded = paint.shaded(samples, key_direction(camera), lights)
         # What has sunk into the floor stays visible, but faint.
         sunk = samples.depth > floor_depth[samples.pixel] + 1e-3 * np.abs(samples.depth)
@@ -151,6 +154,15 @@ def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
     if not (1 <= width <= 8192 and 1 <= height <= 8192):
         raise ValueError(f"size must be width and height from 1 to 8192 pixels, got {size}")
     return width, height
+
+
+def _wired(wire: Any, m: int) -> BoolArray | None:
+    if isinstance(wire, (bool, np.bool_)):
+        return np.ones((m, 3), dtype=np.bool_) if wire else None
+    edges = np.array(wire, dtype=np.bool_)
+    if edges.shape != (m, 3):
+        raise ValueError(f"wire must be True, False or of shape ({m}, 3), got {edges.shape}")
+    return edges
 
 
 def _background(

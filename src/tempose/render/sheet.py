@@ -13,7 +13,7 @@ from tempose.render.colors import Picture, ramp_colors
 from tempose.render.follow import clip_cameras, good_aspect
 from tempose.render.frame import render_frame
 from tempose.render.layout import Legend, Row, lay_out
-from tempose.render.subject import as_clip, floor_level, frame_choice
+from tempose.render.subject import as_clip, floor_level, frame_choice, wire_of
 from tempose.render.themes import Theme, theme_named
 from tempose.render.views import view_label
 from tempose.render.workers import in_order
@@ -123,7 +123,7 @@ def contact_sheet(
 
     def picture(at: tuple[int, int, int]) -> Picture:
         c, v, t = at
-        options = dict(look)
+        options = look | {"wire": wire_of(shown[c].mesh, look.get("wire", False))}
         if values[c] is not None and span is not None:
             options["colors"] = ramp_colors(values[c][t], *span, ramp)
         for key, array in (("lines", bones[c]), ("points", marks[c])):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip
+from tempose.typing import BoolArray, IntArray
 
 
 def as_clip(model: Mesh | MeshClip) -> MeshClip:
@@ -115,3 +116,52 @@ def frame_choice(frames: Any, n_frames: int) -> list[int]:
     if bad or not chosen:
         raise ValueError(f"frames must be from 0 to {n_frames - 1}, got {bad or chosen}")
     return chosen
+
+
+def wire_of(mesh: Mesh, wire: Any) -> Any:
+    """Return which edges to draw: of a mesh of polygons not the diagonals.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What is drawn.
+    wire : bool or array_like
+        As `tempose.render.render_frame` takes it.
+
+    Returns
+    -------
+    bool or array_like
+        The same, but for True and polygons the edges of these.
+    """
+    if wire is True and mesh.polygons is not None:
+        return polygon_edges(mesh.polygons)
+    return wire
+
+
+def polygon_edges(polygons: IntArray) -> BoolArray:
+    """Return which edges of fans of triangles are edges of their polygons.
+
+    Parameters
+    ----------
+    polygons : (p,) int
+        Corners of each polygon; one of k corners is a fan of k - 2 triangles around its first.
+
+    Returns
+    -------
+    (m, 3) ndarray of bool
+        By triangle and corner across from the edge.
+
+    Examples
+    --------
+    >>> polygon_edges(np.array([3, 4])).astype(int)
+    array([[1, 1, 1],
+           [1, 0, 1],
+           [1, 1, 0]])
+    """
+    sizes = np.asarray(polygons) - 2
+    last = np.cumsum(sizes) - 1
+    edges = np.ones((int(sizes.sum()), 3), dtype=np.bool_)
+    edges[:, 1] = edges[:, 2] = False
+    edges[last, 1] = True
+    edges[last - sizes + 1, 2] = True
+    return edges

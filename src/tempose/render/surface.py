@@ -27,7 +27,7 @@ class Samples:
     weights: FloatArray
     """(k, 3) float64 barycentric coordinates in the world."""
     edge: FloatArray
-    """(k,) float64 distance to the nearest edge of the triangle, pixels."""
+    """(k,) float64 distance to the nearest edge of the triangle that counts, pixels."""
     position: FloatArray
     """(k, 3) float64, metres."""
     smooth_position: FloatArray
@@ -48,7 +48,13 @@ class Samples:
 
 
 def trace(
-    V: FloatArray, F: IntArray, N: FloatArray, camera: Camera, size: tuple[int, int], s: int
+    V: FloatArray,
+    F: IntArray,
+    N: FloatArray,
+    camera: Camera,
+    size: tuple[int, int],
+    s: int,
+    edges: BoolArray | None = None,
 ) -> Iterator[Samples]:
     """Find what the samples of a picture see, band by band from the top.
 
@@ -66,6 +72,8 @@ def trace(
         Width and height, pixels.
     s : int
         Samples per pixel along each axis.
+    edges : (m, 3) bool, optional
+        Which edges count for `Samples.edge`, each named by the corner across; else all.
 
     Yields
     ------
@@ -76,6 +84,7 @@ def trace(
     P = screen(V, camera, (width * s, height * s))
     face, _ = rasterise(P, F, width * s, height * s)
     rows = max(_BAND // (width * s * s), 1)
+    counted = np.ones(F.shape, np.bool_) if edges is None else edges
     parallel = camera.fov == 0
     eye = camera.axes[2] if parallel else camera.position
     for top in range(0, height, rows):
@@ -90,7 +99,7 @@ def trace(
             *(np.zeros((k, 3)), np.zeros(k, np.bool_), np.zeros(k)),
         )
         _interpolate(
-            band, top, s, P, V, F, N, parallel, eye, out.pixel, out.face, out.weights, out.edge,
+            band, top, s, P, V, F, N, counted, parallel, eye, out.pixel, out.face, out.weights, out.edge,
             out.position, out.smooth_position, out.normal, out.view, out.back,
         )  # fmt: skip
         out.depth[:] = (camera.position - out.position) @ camera.axes[2]
@@ -127,7 +136,25 @@ def screen(V: FloatArray, camera: Camera, size: tuple[int, int]) -> FloatArray:
 
 @njit(cache=True, nogil=True)
 def _interpolate(
-    faces, top, s, P, V, F, N, parallel, eye, pixel, face, weights, edge, position, smooth, normal, view, back
+    faces,
+    top,
+    s,
+    P,
+    V,
+    F,
+    N,
+    counted,
+    parallel,
+    eye,
+    pixel,
+    face,
+    weights,
+    edge,
+    position,
+    smooth,
+    normal,
+    view,
+    back,
 ):
     height, width = faces.shape[0] // s, faces.shape[1] // s
     k = 0
@@ -139,7 +166,7 @@ def _interpolate(
                 if f < 0:
                     continue
                 pixel[k], face[k] = (top + j) * width + i, f
-                edge[k] = _weights(P, F, f, x + 0.5, top * s + y + 0.5, parallel, weights, k) / s
+                edge[k] = _weights(P, F, f, counted, x + 0.5, top * s + y + 0.5, parallel, weights, k) / s
                 for c in range(3):
                     for d in range(3):
                         position[k, d] += weights[k, c] * V[F[f, c], d]
@@ -150,7 +177,7 @@ def _interpolate(
 
 
 @njit(cache=True, nogil=True)
-def _weights(P, F, f, x, y, parallel, weights, k):
+def _weights(P, F, f, counted, x, y, parallel, weights, k):
     # Corners are snapped to 1/256 pixel when drawn: clip what this leaves outside the triangle.
     a, b, c = F[f, 0], F[f, 1], F[f, 2]
     ax, ay, bx, by, cx, cy = P[a, 0], P[a, 1], P[b, 0], P[b, 1], P[c, 0], P[c, 1]
@@ -160,9 +187,9 @@ def _weights(P, F, f, x, y, parallel, weights, k):
     wc = max(((bx - ax) * (y - ay) - (by - ay) * (x - ax)) * scale, 0.0)
     wa = max(1.0 - wb - wc, 0.0)
     edge = abs(area) * min(
-        wa / max(np.hypot(cx - bx, cy - by), 1e-9),
-        wb / max(np.hypot(ax - cx, ay - cy), 1e-9),
-        wc / max(np.hypot(bx - ax, by - ay), 1e-9),
+        wa / max(np.hypot(cx - bx, cy - by), 1e-9) if counted[f, 0] else np.inf,
+        wb / max(np.hypot(ax - cx, ay - cy), 1e-9) if counted[f, 1] else np.inf,
+        wc / max(np.hypot(bx - ax, by - ay), 1e-9) if counted[f, 2] else np.inf,
     )
     if not parallel:
         wa, wb, wc = wa * P[a, 2], wb * P[b, 2], wc * P[c, 2]
