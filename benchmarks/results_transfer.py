@@ -149,7 +149,7 @@ def sheet(name: str, result: TransferResult) -> None:
     last = 23 if name.startswith("gallop") else result.clip.n_frames - 1
     frames = [int(t) for t in np.linspace(0, last, SHEET_FRAMES)]
     image = contact_sheet([c for c in clips if c is not None], frames=frames, views=("front", "side"))
-    save_png(ROOT / "docs" / "gallery" / f"transfer-{name}.png", image)
+    save_png(image, ROOT / "docs" / "gallery" / f"transfer-{name}.png")
 
 
 def centred(V: np.ndarray) -> np.ndarray:

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from tempose.clips import Mesh, MeshClip
-from tempose.clips.mesh_parts import components, keep_clip_group, keep_faces, keep_group, weld
+from tempose.clips.mesh_parts import keep_clip_group, keep_faces, keep_group
+from tempose.geometry import vertex_components, weld
 
 
 def quads(rng) -> Mesh:
@@ -71,7 +72,7 @@ def test_weld_joins_equal_positions_and_no_others(points):
 
 def test_components_count_pieces_and_loose_vertices():
     F = np.array([[0, 1, 2], [2, 3, 4], [6, 7, 8]])
-    count, label = components(F, 10)
+    count, label = vertex_components(F, 10)
     assert count == 4
     assert label.tolist() == [0, 0, 0, 0, 0, 1, 2, 2, 2, 3]
-    assert components(np.zeros((0, 3), int), 3)[0] == 3
+    assert vertex_components(np.zeros((0, 3), int), 3)[0] == 3

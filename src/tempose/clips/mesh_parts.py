@@ -1,4 +1,4 @@
-"""Parts of a mesh: a named group, connected pieces, vertices that lie on one another."""
+"""Parts of a mesh: a named group, or any choice of faces."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from tempose.clips.mesh import Mesh
 from tempose.clips.mesh_clip import MeshClip
-from tempose.typing import BoolArray, FloatArray, IntArray
+from tempose.typing import BoolArray, IntArray
 
 
 def keep_group(mesh: Mesh, name: str) -> tuple[Mesh, IntArray]:
@@ -102,56 +102,6 @@ def keep_faces(mesh: Mesh, chosen: BoolArray) -> tuple[Mesh, IntArray]:
         polygons=_kept_polygons(mesh.polygons, chosen),
     )
     return part, vertex_index
-
-
-def weld(V: FloatArray) -> tuple[IntArray, IntArray]:
-    """Find vertices that lie on exactly the same spot.
-
-    Parameters
-    ----------
-    V : (n, 3) float
-        Positions; 0.0 and -0.0 are the same.
-
-    Returns
-    -------
-    unique : (k,) ndarray of int
-        First vertex of every spot, ascending.
-    inverse : (n,) ndarray of int
-        Spot of every vertex: ``V[unique][inverse]`` equals `V`.
-    """
-    _, first, inverse = np.unique(np.asarray(V) + 0.0, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.zeros(len(order), np.int64)
-    rank[order] = np.arange(len(order))
-    return first[order], rank[inverse.reshape(-1)]
-
-
-def components(F: IntArray, n: int) -> tuple[int, IntArray]:
-    """Find the connected pieces of a mesh.
-
-    Parameters
-    ----------
-    F : (m, 3) int
-        Faces.
-    n : int
-        Number of vertices; one that no face uses is a piece of its own.
-
-    Returns
-    -------
-    count : int
-        Number of pieces.
-    label : (n,) ndarray of int
-        Piece of every vertex, numbered by first vertex.
-    """
-    # half a second to import, and readers need the rest of this file only
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    F = np.asarray(F)
-    rows, columns = F[:, [0, 1]].ravel(), F[:, [1, 2]].ravel()
-    graph = coo_matrix((np.ones(len(rows), np.bool_), (rows, columns)), shape=(n, n)).tocsr()
-    count, label = connected_components(graph, directed=False)
-    return int(count), label
 
 
 def _compact(F: IntArray, n: int) -> tuple[IntArray, IntArray]:
