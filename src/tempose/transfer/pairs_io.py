@@ -41,7 +41,7 @@ def load_pairs(path: str | os.PathLike[str]) -> Pairs:
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f"{path}: expected a text file of pairs, found binary data") from None
     suffix = path.suffix.lower()
@@ -58,9 +58,10 @@ def load_pairs(path: str | os.PathLike[str]) -> Pairs:
         )
     try:
         return readers[suffix](text, str(path))
-    except (ValueError, TypeError) as error:
-        message = str(error)
-        raise ValueError(message if message.startswith(str(path)) else f"{path}: {message}") from None
+    except RecursionError:
+        raise ValueError(f"{path}: brackets are nested too deep for a list of pairs") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
 
 
 def save_pairs(path: str | os.PathLike[str], pairs: Pairs, source: str = "", target: str = "") -> None:
@@ -122,33 +123,39 @@ def _from_table(data: Any, path: str) -> Pairs:
         )
         if not fits or row[1] < 0 or (kind != "joints" and (type(row[0]) is not int or row[0] < 0)):
             noun = "[joint name, face index]" if kind == "joints" else "[index, index] from 0"
-            raise ValueError(f"pair {i} must be {noun}, found {json.dumps(row)[:60]}")
+            raise ValueError(f"pair {i} must be {noun}, found {str(row)[:60]}")
+    part, joints, ends = data.get("part", []), data.get("joints", {}), data.get("ends", {})
+    if not isinstance(part, list) or not all(isinstance(name, str) for name in part):
+        raise ValueError(f"part must be a list of names, found {str(part)[:60]}")
+    for name, places in (("joints", joints), ("ends", ends)):
+        if not isinstance(places, dict):
+            raise ValueError(f"{name} must be a table of joint names and positions, found {str(places)[:60]}")
     source = tuple(row[0] for row in rows) if kind == "joints" else np.array([row[0] for row in rows])
     return Pairs(
         kind,
         source,
         np.array([row[1] for row in rows]),
-        tuple(data.get("part") or ()),
-        data.get("joints") or {},
-        data.get("ends") or {},
+        tuple(part),
+        joints,
+        ends,
         origin=path,
     )
 
 
 def _from_cons(text: str, path: str) -> Pairs:
-    lines = [line.strip() for line in text.splitlines()]
-    rows = [(number, re.findall(r"-?\d+", line)) for number, line in enumerate(lines, 1) if line]
-    if not rows or len(rows[0][1]) != 1:
+    lines = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1)]
+    lines = [(number, line) for number, line in lines if line]
+    if not lines or not re.fullmatch(r"[0-9]+", lines[0][1]):
         raise ValueError("line 1 must hold the number of pairs")
-    count, found = int(rows[0][1][0]), len(rows) - 1
-    for number, row in rows[1:]:
-        if len(row) != 2 or any(x.startswith("-") for x in row):
-            raise ValueError(
-                f"line {number} must be 'source, target' from 0, found {lines[number - 1][:60]!r}"
-            )
-    if count != found:
-        raise ValueError(f"line 1 announces {count} pairs, found {found}")
-    return _vertices([(int(a), int(b)) for _, (a, b) in rows[1:]], path)
+    rows: list[tuple[int, int]] = []
+    for number, line in lines[1:]:
+        match = re.fullmatch(r"([0-9]+)\s*[,\s]\s*([0-9]+)", line)
+        if match is None:
+            raise ValueError(f"line {number} must be 'source, target' from 0, found {line[:60]!r}")
+        rows.append((int(match[1]), int(match[2])))
+    if int(lines[0][1]) != len(rows):
+        raise ValueError(f"line 1 announces {int(lines[0][1])} pairs, found {len(rows)}")
+    return _vertices(rows, path)
 
 
 def _from_yaml(text: str, path: str) -> Pairs:
@@ -162,15 +169,20 @@ def _from_yaml(text: str, path: str) -> Pairs:
         raise ValueError("expected a list under 'markers', found none")
     rows: list[tuple[int, int]] = []
     for i, entry in enumerate(markers):
-        match = re.fullmatch(r"\s*\[?\s*(\d+)\s*[:, ]\s*(\d+)\s*\]?\s*", str(entry))
+        # only text is looked at: a list that refers to itself has no end when printed
+        text = entry if isinstance(entry, str) else f"a {type(entry).__name__}"
+        match = re.fullmatch(r"\s*([0-9]+)\s*[:, ]\s*([0-9]+)\s*", text)
         if match is None:
-            raise ValueError(f"marker {i} must be 'source:target' from 0, found {str(entry)[:60]!r}")
+            raise ValueError(f"marker {i} must be 'source:target' from 0, found {text[:60]!r}")
         rows.append((int(match[1]), int(match[2])))
     return _vertices(rows, path)
 
 
 def _vertices(rows: list[tuple[int, int]], path: str) -> Pairs:
-    table = np.array(rows, dtype=np.int64).reshape(-1, 2)
-    if table.size and table.max() > np.iinfo(np.int32).max:
-        raise ValueError(f"index {table.max()} is larger than any mesh")
+    if not rows:
+        raise ValueError("expected at least one pair, found none")
+    largest = max(map(max, rows))
+    if largest > np.iinfo(np.int32).max:
+        raise ValueError(f"index {largest} is larger than any mesh")
+    table = np.array(rows, dtype=np.int64)
     return Pairs("vertices", table[:, 0], table[:, 1], origin=path)
