@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial import Delaunay
 
@@ -118,3 +119,18 @@ def test_samples_lie_on_their_triangle_and_on_their_line_of_sight(rng, fov):
     expected = near.reshape(40, 2, 48, 2).transpose(0, 2, 1, 3).ravel()
     expected = expected[expected > -np.inf]
     assert_allclose((-samples.depth if fov == 0 else 1 / samples.depth)[inside], expected[inside], rtol=2e-3)
+
+
+def test_light_starts_outside_the_curved_surface_that_a_coarse_mesh_stands_for():
+    # Between tangent planes of a sphere: as far outside as the chord is inside, to leading order.
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    V, F = np.asarray(ball.vertices), np.asarray(ball.faces)
+    (samples,) = trace(V, F, corner_normals(V, F), Camera.fit(V, 0.3, 0.2), (80, 80), 1)
+    sag = 1 - np.linalg.norm(samples.position, axis=1)
+    rise = np.linalg.norm(samples.smooth_position, axis=1) - 1
+    assert_allclose(rise, sag, atol=0.2 * sag.max())
+    # Flat parts stay where they are.
+    box = trimesh.creation.box()
+    V, F = np.asarray(box.vertices), np.asarray(box.faces)
+    (samples,) = trace(V, F, corner_normals(V, F, 0.1), Camera.fit(V, 0.3, 0.2), (40, 40), 1)
+    assert_allclose(samples.smooth_position, samples.position, atol=1e-12)

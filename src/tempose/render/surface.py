@@ -31,7 +31,7 @@ class Samples:
     position: FloatArray
     """(k, 3) float64, metres."""
     smooth_position: FloatArray
-    """(k, 3) float64, metres: moved out to the smooth surface that the normals pretend [1]_.
+    """(k, 3) float64, metres: moved out to the tangent planes of the corners [1]_.
 
     Without it a coarse mesh throws the shadow of its flat faces onto itself along the terminator.
 
