@@ -71,8 +71,7 @@ def template_clip(names: tuple[str, ...], motion: BonePose, fps: float, name: st
     for b, bone in enumerate(names):
         length = float(lengths[b]) if lengths[b] > 0 else 0.3 * typical
         V, F = bone_mesh(length, min(0.16 * length + 0.03 * typical, 0.3 * typical))
-        span = motion.ends[0, b] - motion.starts[0, b]
-        axis = rotate(conjugate(motion.turns[0, b]), span) if span.any() else np.array([0.0, 1.0, 0.0])
+        axis = rotate(conjugate(motion.turns[0, b]), _direction(motion, b))
         local.append(rotate(shortest_rotation(np.array([0.0, 1.0, 0.0]), axis), V))
         faces.append(F + first)
         groups[bone] = np.arange(m, m + len(F))
@@ -82,3 +81,13 @@ def template_clip(names: tuple[str, ...], motion: BonePose, fps: float, name: st
     frames = rotate(motion.turns[:, bone_of], points) + motion.starts[:, bone_of]
     mesh = Mesh(frames[0], np.vstack(faces), groups=groups, name=name)
     return MeshClip(frames.astype(np.float32), mesh, fps)
+
+
+def _direction(motion: BonePose, b: int) -> FloatArray:
+    """Direction of a bone in frame 0; one of unknown end continues the bone that ends where it starts."""
+    directions = motion.directions[0]
+    if not directions[b].any():
+        gap = np.linalg.norm(motion.ends[0] - motion.starts[0, b], axis=1)
+        gap[motion.lengths[0] == 0] = np.inf
+        b = int(gap.argmin())
+    return directions[b] if directions[b].any() else np.array([0.0, 1.0, 0.0])
