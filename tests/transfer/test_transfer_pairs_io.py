@@ -6,7 +6,6 @@ import json
 import string
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -235,18 +234,23 @@ def mutated(draw: st.DrawFn) -> tuple[str, str]:
     return suffix, text
 
 
+def message_of(path: Path) -> str:
+    """What loading a list says: nothing where it could be read. Any other error is a failure."""
+    try:
+        pairs = load_pairs(path)
+    except (ValueError, OSError) as error:
+        return str(error)
+    assert len(pairs.source) == len(pairs.target) > 0
+    return ""
+
+
 @settings(max_examples=300)
 @given(mutated())
 def test_damaged_lists_are_read_or_refused(tmp_path_factory, case: tuple[str, str]) -> None:
     suffix, text = case
     path = tmp_path_factory.getbasetemp() / ("fuzz" + suffix)
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
-    try:
-        pairs = load_pairs(path)
-    except (ValueError, OSError) as error:
-        assert str(path) in str(error)
-    else:
-        assert len(pairs.source) == len(pairs.target) > 0
+    assert message_of(path).startswith(str(path)) or not message_of(path)
 
 
 @settings(max_examples=150)
@@ -254,21 +258,7 @@ def test_damaged_lists_are_read_or_refused(tmp_path_factory, case: tuple[str, st
 def test_any_text_at_all_is_read_or_refused(tmp_path_factory, suffix: str, text: str | bytes) -> None:
     path = tmp_path_factory.getbasetemp() / ("any" + suffix)
     path.write_bytes(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text)
-    with pytest.raises((ValueError, OSError)) if not _looks_good(text) else _nothing():
-        load_pairs(path)
-
-
-def _looks_good(text: str | bytes) -> bool:
-    return any(c in (text if isinstance(text, str) else text.decode("latin-1")) for c in "0123456789")
-
-
-class _nothing:
-    """Let a value error pass: digits may by chance make a list."""
-
-    def __enter__(self) -> None: ...
-
-    def __exit__(self, kind: type | None, *rest: object) -> bool:
-        return kind is not None and issubclass(kind, (ValueError, OSError))
+    assert message_of(path).startswith(str(path)) or not message_of(path)
 
 
 @settings(max_examples=60)
@@ -277,10 +267,8 @@ class _nothing:
     st.booleans(),
 )
 def test_any_pairs_come_back(tmp_path_factory, rows: list[tuple[str, int]], named: bool) -> None:
-    source, target = (name.encode("utf-8", "replace").decode() for name, _ in rows), [t for _, t in rows]
-    source = tuple(source)
-    pairs = Pairs("joints", source, target, source if named else ())
+    source = tuple(name.encode("utf-8", "replace").decode() for name, _ in rows)
+    pairs = Pairs("joints", source, [t for _, t in rows], source if named else ())
     path = tmp_path_factory.getbasetemp() / "round.json"
     save_pairs(path, pairs)
     same(load_pairs(path), pairs)
-    assert isinstance(np.asarray(target), np.ndarray)
