@@ -10,6 +10,7 @@ import tempose
 from tempose.cli.compare import compare
 from tempose.cli.convert import convert
 from tempose.cli.data import data
+from tempose.cli.demo import demo
 from tempose.cli.info import info
 from tempose.cli.render import render
 from tempose.cli.transfer import transfer
@@ -19,6 +20,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.command()(demo)
 app.command()(transfer)
 app.command()(info)
 app.command()(convert)

@@ -1,0 +1,91 @@
+"""`tempose demo`: motion onto built-in characters, with pictures, a table and a page."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import tempose
+from tempose.cli.console import note, progress_bar, show_table, writing
+from tempose.cli.demo_cases import CASES, Case, make_target
+from tempose.cli.demo_page import HEADER, table_row, write_page
+from tempose.cli.report import make_report, write_report
+
+if TYPE_CHECKING:
+    from tempose.transfer import TransferResult
+    from tempose.typing import Progress
+
+_CELL = 200
+_MOMENTS = 7
+_FILM = (280, 340)
+
+
+def demo(  # numpydoc ignore=PR01
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for pictures, clips and report.html.")
+    ] = Path("demo"),
+    only: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help=f"Only one of {', '.join(case.name for case in CASES)}."),
+    ] = None,
+) -> None:
+    """Show what Tempose does, on built-in characters; takes a few minutes and no network."""
+    cases = [case for case in CASES if only in (None, case.name)]
+    if not cases:
+        raise ValueError(f"--only must be one of {', '.join(case.name for case in CASES)}, got {only!r}")
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+    began = time.perf_counter()
+    reports: list[dict[str, Any]] = []
+    for i, case in enumerate(cases):
+        note(f"{i + 1} of {len(cases)}: {case.title.lower()} onto the {case.target}")
+        with progress_bar() as progress, writing(out):
+            reports.append(_run(case, out, progress))
+    with writing(out):
+        write_page(out, reports)
+    write_report(out / "report.json", make_report("demo", {}, {"only": only}, {"transfers": reports}, began))
+    _show(reports)
+    note(f"{time.perf_counter() - began:.0f} s; open {out / 'report.html'}")
+
+
+def _run(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
+    progress(0, 0, "making the character")
+    motion, target = case.motion(), make_target(case.target)
+    result = tempose.transfer.transfer_motion(motion, target, progress=progress)
+    tempose.save(folder / f"{case.name}.glb", result.clip, progress=progress)
+    _draw(case, result, folder, progress)
+    return {
+        "name": case.name,
+        "title": case.title,
+        "about": case.about,
+        "frames": result.clip.n_frames,
+        "fps": result.clip.fps,
+        "triangles": len(result.clip.faces),
+        **result.report,
+    }
+
+
+def _draw(case: Case, result: TransferResult, folder: Path, progress: Progress) -> None:
+    from tempose.clips.resample import select_frames
+
+    shown = [result.clip] if result.source is None else [result.source, result.clip]
+    names = ["source", "character"][-len(shown) :]
+    look: dict[str, Any] = {"names": names, "cell": _CELL, "frames": _MOMENTS}
+    tempose.render.render(shown, folder / f"{case.name}.png", progress=progress, **look)
+    if case.film:
+        fewer = [select_frames(clip, step=2) for clip in shown]
+        tempose.render.render(fewer, folder / f"{case.name}.mp4", progress=progress, size=_FILM)
+
+
+def _show(reports: list[dict[str, Any]]) -> None:
+    rows = [[_text(value) for value in table_row(report["title"], report)] for report in reports]
+    show_table(rows, HEADER, numbers=True)
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
