@@ -13,6 +13,8 @@ from tempose.transfer.pose import BonePose
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 _NEAR_GROUND = 0.06
+_FOOT_GAP = 0.06
+"""Low pairs of a mesh nearer than this share of its height are one foot: left and right are further apart."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +158,7 @@ def mesh_feet(
         return Feet((), np.zeros((len(V), 0, 3)), (), np.zeros((len(V), 0), dtype=bool))
     labels = np.ones(1, dtype=int)
     if len(chosen) > 1:
-        labels = fcluster(linkage(V_rest[source[chosen]], "single"), 0.12 * height, "distance")
+        labels = fcluster(linkage(V_rest[source[chosen]], "single"), _FOOT_GAP * height, "distance")
     points: list[FloatArray] = []
     vertices: list[IntArray] = []
     for label in np.unique(labels):

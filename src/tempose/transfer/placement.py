@@ -12,6 +12,7 @@ from tempose.typing import BoolArray, FloatArray
 
 _SOLE = 0.01
 _LEAST_TRAVEL = 0.05
+"""Speed of the hips in contact, in heights a second, below which a scale means nothing."""
 
 
 @dataclass(frozen=True)
@@ -118,10 +119,11 @@ def fit_scale(
         v = sole_velocities(foot, height, fps)[mine][:, [0, 2]]
         against -= float((v * hip[mine]).sum())
         along += float((hip[mine] ** 2).sum())
-    travel = np.sqrt(along / max(int(contact.sum()), 1))
-    if travel < _LEAST_TRAVEL * height or against <= 0:
+    if along <= 0 or against <= 0:
         return None
-    return against / along
+    scale = against / along
+    travel = scale * np.sqrt(along / int(contact.sum()))
+    return scale if travel > _LEAST_TRAVEL * height else None
 
 
 def _slip_steps(
