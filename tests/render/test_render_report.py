@@ -16,7 +16,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 from tempose.render import Cell, Chart, Figure, Numbers, Paragraph, Section, Table, html_report, line_chart
-from tempose.render.charts import nice_ticks
+from tempose.render.chart_scale import nice_ticks
 from tempose.render.report import report_text
 
 VOID = {"meta", "img", "source"}

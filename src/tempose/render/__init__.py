@@ -6,7 +6,8 @@ from tempose.render.colors import RAMPS, ramp_colors
 from tempose.render.film import film, render, turntable
 from tempose.render.follow import clip_cameras
 from tempose.render.frame import render_frame
-from tempose.render.report import Cell, Chart, Figure, Numbers, Paragraph, Section, Table, html_report
+from tempose.render.report import html_report
+from tempose.render.report_blocks import Cell, Chart, Figure, Numbers, Paragraph, Section, Table
 from tempose.render.sheet import contact_sheet
 from tempose.render.subject import ground_level
 from tempose.render.themes import DARK, LIGHT, Theme

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tempose.render.chart_scale import nice_ticks, pen_path, value_range
 from tempose.typing import FloatArray
 
 _COLORS = ("#4650c8", "#b92f52", "#176f40", "#a64e00", "#0a6f94", "#7a6300")
@@ -59,7 +60,7 @@ def line_chart(
     curves = {str(name): np.asarray(y, dtype=np.float64) for name, y in series.items()}
     at = _places(curves, x)
     levels = {str(name): float(value) for name, value in (limits or {}).items()}
-    low, high = _range([*curves.values(), np.array(list(levels.values()))], y_range)
+    low, high = value_range([*curves.values(), np.array(list(levels.values()))], y_range)
     x0, x1 = (float(at[0]), float(at[-1])) if len(at) else (0.0, 1.0)
     x1 = x1 if x1 > x0 else x0 + 1.0
     width, height = size
@@ -78,7 +79,7 @@ def line_chart(
             f'<text class="limit-name" x="{right}" y="{y - 3:.1f}" text-anchor="end">{escape(name)}</text>'
         )
     for k, (name, y) in enumerate(curves.items()):
-        path = _path(px(at), py(np.clip(y, low, high)), width)
+        path = pen_path(px(at), py(np.clip(y, low, high)), width)
         parts.append(
             f'<path class="curve" d="{path}" style="{_stroke(k)}"><title>{escape(name)}</title></path>'
         )
@@ -88,33 +89,6 @@ def line_chart(
         f'<svg{names} class="chart" role="img" aria-label="{label}" width="{width}" height="{height}" '
         f'viewBox="0 0 {width} {height}">{_style() if standalone else ""}{"".join(parts)}</svg>'
     )
-
-
-def nice_ticks(low: float, high: float, count: int = 5) -> list[float]:
-    """Return round numbers that divide a range.
-
-    Parameters
-    ----------
-    low, high : float
-        The range.
-    count : int, default 5
-        About how many.
-
-    Returns
-    -------
-    list of float
-        Multiples of 1, 2 or 5 times a power of ten, within the range.
-
-    Examples
-    --------
-    >>> nice_ticks(0.0, 1.0)
-    [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
-    """
-    rough = (high - low) / max(count, 1)
-    power = 10.0 ** np.floor(np.log10(rough))
-    step = min((m * power for m in (1, 2, 5, 10)), key=lambda s: abs(np.log(s / rough)))
-    first, last = int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9))
-    return [float(round(k * step, 12)) for k in range(first, last + 1)]
 
 
 def chart_style() -> str:
@@ -155,21 +129,6 @@ def _places(curves: Mapping[str, FloatArray], x: Any) -> FloatArray:
     return at
 
 
-def _range(values: list[FloatArray], given: tuple[float, float] | None) -> tuple[float, float]:
-    if given is not None:
-        if not given[0] < given[1]:
-            raise ValueError(f"y_range must go from low to high, got {given}")
-        return float(given[0]), float(given[1])
-    flat = np.concatenate([v.ravel() for v in values])
-    flat = flat[np.isfinite(flat)]
-    if flat.size == 0:
-        return 0.0, 1.0
-    low, high = float(flat.min()), float(flat.max())
-    margin = 0.06 * (high - low) if high > low else max(abs(high) * 0.1, 0.5)
-    # Values that start at nothing keep their zero.
-    return (0.0 if 0 <= low <= 0.35 * high else low - margin), high + margin
-
-
 def _axes(px: Any, py: Any, xs: tuple[float, float], ys: tuple[float, float], size: tuple[int, int]) -> str:
     width, height = size
     bottom = height - _BOTTOM
@@ -206,32 +165,6 @@ def _stroke(k: int) -> str:
     k %= len(_COLORS)
     dash = f";stroke-dasharray:{_DASHES[k]}" if _DASHES[k] else ""
     return f"stroke:var(--s{k},{_COLORS[k]});stroke-width:1.6{dash}"
-
-
-def _path(x: FloatArray, y: FloatArray, width: int) -> str:
-    x, y = _thinned(x, y, width)
-    words, pen = [], "M"
-    for a, b in zip(x, y):
-        if not np.isfinite(b):
-            pen = "M"
-            continue
-        words.append(f"{pen}{a:.1f} {b:.1f}")
-        pen = "L"
-    return "".join(words)
-
-
-def _thinned(x: FloatArray, y: FloatArray, width: int) -> tuple[FloatArray, FloatArray]:
-    # More points than pixels: keep the least and the greatest of each column, so that peaks stay.
-    if len(x) <= 3 * width:
-        return x, y
-    keep: list[int] = []
-    for part in np.array_split(np.arange(len(x)), width):
-        finite = part[np.isfinite(y[part])]
-        ends = (
-            {int(finite[y[finite].argmin()]), int(finite[y[finite].argmax()])} if len(finite) else set[int]()
-        )
-        keep += sorted(ends | ({int(part[~np.isfinite(y[part])][0])} if len(finite) < len(part) else set()))
-    return x[keep], y[keep]
 
 
 def _number(v: float) -> str:

@@ -8,11 +8,11 @@ import numpy as np
 
 from tempose._validate import as_floats, as_indices
 from tempose.render.camera import Camera
-from tempose.render.colors import Picture, as_colors, to_linear, to_srgb
+from tempose.render.colors import Picture, to_linear, to_srgb
 from tempose.render.floor import floor_picture
 from tempose.render.lights import Lights, Quality, make_lights, quality_named
 from tempose.render.normals import corner_normals
-from tempose.render.overlay import draw_segments
+from tempose.render.overlay import overlaid
 from tempose.render.paint import Paint, blend
 from tempose.render.surface import trace
 from tempose.render.themes import Theme, rgb, theme_named
@@ -124,9 +124,9 @@ def render_frame(
         shaded[sunk] = 0.4 * shaded[sunk] + 0.6 * behind[samples.pixel[sunk]]
         blend(picture, depth, samples.pixel, samples.depth, shaded, work.samples**2)
     picture, depth = picture.reshape(height, width, 3), depth.reshape(height, width)
-    _overlaid(picture, depth, camera, lines, line_colors, line_width, "lines", tone.held)
+    overlaid(picture, depth, camera, lines, line_colors, line_width, "lines", tone.held)
     spots = None if points is None else np.repeat(np.asarray(points, dtype=float)[:, None], 2, axis=1)
-    _overlaid(picture, depth, camera, spots, point_colors, point_size, "points", tone.held)
+    overlaid(picture, depth, camera, spots, point_colors, point_size, "points", tone.held)
     return np.round(to_srgb(picture) * 255).astype(np.uint8)
 
 
@@ -181,26 +181,3 @@ def _background(
         raise ValueError(f"ground must be a height in metres or None, got {ground}")
     box = np.stack([V.min(axis=0), V.max(axis=0)]) if len(V) else np.array([[-1.0] * 3, [1.0] * 3])
     return floor_picture(camera, size, float(ground), lights, tone, box, stride=1 if work.samples > 2 else 2)
-
-
-def _overlaid(
-    picture: FloatArray,
-    depth: FloatArray,
-    camera: Camera,
-    ends: Any,
-    colors: Any,
-    width: float,
-    name: str,
-    default: str,
-) -> None:
-    if ends is None:
-        return
-    E = np.asarray(ends, dtype=np.float64)
-    if E.ndim != 3 or E.shape[1:] != (2, 3):
-        shape = "(k, 2, 3)" if name == "lines" else "(p, 3)"
-        raise ValueError(f"{name} must have shape {shape}, got {np.shape(ends)}")
-    size = (depth.shape[1], depth.shape[0])
-    P = camera.project(np.where(np.isfinite(E), E, 0.0).reshape(-1, 3), size).reshape(-1, 2, 3)
-    P[~np.isfinite(E).all(axis=(1, 2))] = np.nan
-    ink = to_linear(as_colors(default if colors is None else colors, f"{name[:-1]}_colors", len(E)))
-    draw_segments(picture, depth, P, ink, width / 2)

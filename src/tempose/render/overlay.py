@@ -3,10 +3,63 @@
 # pyright: reportMissingParameterType=false
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
+from tempose.render.camera import Camera
+from tempose.render.colors import as_colors, to_linear
 from tempose.typing import FloatArray
+
+
+def overlaid(
+    picture: FloatArray,
+    depth: FloatArray,
+    camera: Camera,
+    ends: Any,
+    colors: Any,
+    width: float,
+    name: str,
+    default: str,
+) -> None:
+    """Draw the segments or points of `tempose.render.render_frame` into a picture.
+
+    Parameters
+    ----------
+    picture : (height, width, 3) float64
+        Linear light; written.
+    depth : (height, width) float64
+        Metres before the eye, infinite where nothing is.
+    camera : Camera
+        Point of view.
+    ends : (k, 2, 3) array_like, optional
+        Metres.
+    colors : (k, 3) or (3,) array_like or str, optional
+        sRGB, 0 to 1.
+    width : float
+        Pixels.
+    name : str
+        ``"lines"`` or ``"points"``, for messages.
+    default : str
+        Colour if none is given.
+
+    Raises
+    ------
+    ValueError
+        If a shape is another.
+    """
+    if ends is None:
+        return
+    E = np.asarray(ends, dtype=np.float64)
+    if E.ndim != 3 or E.shape[1:] != (2, 3):
+        shape = "(k, 2, 3)" if name == "lines" else "(p, 3)"
+        raise ValueError(f"{name} must have shape {shape}, got {np.shape(ends)}")
+    size = (depth.shape[1], depth.shape[0])
+    P = camera.project(np.where(np.isfinite(E), E, 0.0).reshape(-1, 3), size).reshape(-1, 2, 3)
+    P[~np.isfinite(E).all(axis=(1, 2))] = np.nan
+    ink = to_linear(as_colors(default if colors is None else colors, f"{name[:-1]}_colors", len(E)))
+    draw_segments(picture, depth, P, ink, width / 2)
 
 
 def draw_segments(

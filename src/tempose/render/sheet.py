@@ -108,18 +108,7 @@ def contact_sheet(
     marks = _per_clip(points, shown, several, "points", 3)
     size = _cell_size(cell, shown, views)
     floors = [floor_level(clip, ground) for clip in shown]
-    paths = {
-        (c, v): clip_cameras(
-            clip,
-            view,
-            aspect=size[0] / size[1],
-            track=track,
-            elevation=None if view == "top" or isinstance(view, tuple) else elevation,
-            roam=0.2,
-        )
-        for c, clip in enumerate(shown)
-        for v, view in enumerate(views)
-    }
+    paths = _paths(shown, views, size, track, elevation)
 
     def picture(at: tuple[int, int, int]) -> Picture:
         c, v, t = at
@@ -138,16 +127,34 @@ def contact_sheet(
     for at, done in zip(cells, in_order(picture, cells, workers)):
         pictures[at] = done
         progress(len(pictures), len(cells), "rendering")
+    labels = names or [clip.name for clip in shown]
     rows = [
         Row(
             [pictures[c, v, t] for t in chosen[c]],
             [f"{t}   {t / clip.fps:.2f} s" for t in chosen[c]],
-            " · ".join(w for w in ((names or [k.name for k in shown])[c], view_label(view)) if w),
+            " · ".join(w for w in (labels[c], view_label(view)) if w),
         )
         for c, clip in enumerate(shown)
         for v, view in enumerate(views)
     ]
     return lay_out(rows, title, tone, None if span is None else Legend(*span, scalar_label, ramp))
+
+
+def _paths(
+    clips: list[MeshClip],
+    views: Sequence[Any],
+    size: tuple[int, int],
+    track: bool | None,
+    elevation: float | None,
+) -> dict[tuple[int, int], list[Camera]]:
+    paths: dict[tuple[int, int], list[Camera]] = {}
+    for c, clip in enumerate(clips):
+        for v, view in enumerate(views):
+            up = None if view == "top" or isinstance(view, tuple) else elevation
+            paths[c, v] = clip_cameras(
+                clip, view, aspect=size[0] / size[1], track=track, elevation=up, roam=0.2
+            )
+    return paths
 
 
 def _cell_size(cell: int | tuple[int, int], clips: list[MeshClip], views: Sequence[Any]) -> tuple[int, int]:
