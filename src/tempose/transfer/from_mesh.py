@@ -6,7 +6,12 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
+from scipy.sparse.csgraph import (
+    breadth_first_order,
+    connected_components,
+    dijkstra,
+    minimum_spanning_tree,
+)
 
 from tempose.clips import Mesh, MeshClip
 from tempose.geometry import edge_list, k_rings
@@ -137,14 +142,15 @@ def geodesic_tree(V: FloatArray, F: IntArray, vertices: IntArray) -> tuple[IntAr
 
 
 def _walk(tree: Any, k: int, root: int = 0) -> tuple[IntArray, IntArray]:
-    from scipy.sparse.csgraph import breadth_first_order
-
-    order, predecessors = breadth_first_order(tree, root, directed=False)
-    missing = np.setdiff1d(np.arange(k), order)
-    order = np.r_[order, missing]
+    """Order a forest of k nodes parents first; trees without the root hang on it by one node each."""
+    labels = connected_components(tree, directed=False)[1]
+    first = np.unique(labels, return_index=True)[1]
+    apart = first[labels[first] != labels[root]]
+    rope: Any = sp.coo_array((np.ones(len(apart)), (np.full(len(apart), root), apart)), shape=(k, k))
+    order, above = breadth_first_order(tree + rope.tocsr(), root, directed=False)
     place = np.zeros(k, dtype=np.int64)
     place[order] = np.arange(k)
-    above = predecessors[order]
+    above = above[order]
     return order, np.where(above >= 0, place[np.maximum(above, 0)], -1)
 
 
