@@ -134,7 +134,7 @@ def test_standing_still_has_no_scale_to_fit() -> None:
 
 
 def test_hips_that_only_sway_have_none_either() -> None:
-    path, soles, contact = walker()
+    soles = walker()[1]
     sway = 0.01 * np.sin(np.arange(T) / 8)[:, None] * [1.0, 0, 0]
     foot = soles[0][:1] - 0.7 * sway[:, None]
     assert fit_scale(sway, [foot], np.ones((T, 1), dtype=bool), HEIGHT, FPS) is None
