@@ -60,8 +60,11 @@ def remesh(surface: Surface, V: FloatArray, F: IntArray, triangles: int) -> tupl
         A closed mesh of the same topology, `t` within a few percent of `triangles`.
     """
     mesh, V = build(V, F)
-    normals = project(surface.field, V, 2, 0.01)
     longest = float(np.median(np.linalg.norm(V[F[:, 0]] - V[F[:, 1]], axis=1)))
+    if len(F) > 3 * triangles:
+        longest *= 1.9
+        V, _, mesh = _changed(V, np.full(len(V), longest), mesh)
+    normals = project(surface.field, V, 1, longest)
     scale = _scale(surface, V, normals, mesh, triangles)
     while longest < 0.8 * scale:
         longest *= 1.9
@@ -95,12 +98,16 @@ def _round(
     surface: Surface, V: FloatArray, normals: FloatArray, mesh: HalfEdges, scale: float, longest: float
 ) -> tuple[FloatArray, FloatArray, HalfEdges]:
     """All operations once, towards edges of ``min(scale * detail, longest)``."""
-    want = _wanted(surface, V, normals, mesh, scale, longest)
+    V, want, mesh = _changed(V, _wanted(surface, V, normals, mesh, scale, longest), mesh)
+    return V, _relax(surface, V, mesh, want), mesh
+
+
+def _changed(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> tuple[FloatArray, FloatArray, HalfEdges]:
+    """Split, collapse and flip edges."""
     V, want, mesh = _split(V, want, mesh)
     collapse_short(V, want, mesh)
     flip_edges(V, mesh, False)
-    V, want, mesh = compact(V, want, mesh)
-    return V, _relax(surface, V, mesh, want), mesh
+    return compact(V, want, mesh)
 
 
 def _wanted(

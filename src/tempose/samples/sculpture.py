@@ -10,7 +10,6 @@ import numpy as np
 
 from tempose.clips import Skeleton
 from tempose.samples.field import Field, pack
-from tempose.samples.field_queries import project
 from tempose.samples.parts import Node, Part
 from tempose.samples.surface_nets import surface_nets
 from tempose.typing import FloatArray, IntArray
@@ -52,6 +51,4 @@ class Sculpture:
         """A dense mesh of it, to be remeshed."""
         bounds = np.array([part.bounds for part in self.parts if not part.carve])
         lower, upper = bounds[:, 0].min(axis=0) - 0.02, bounds[:, 1].max(axis=0) + 0.02
-        V, F = surface_nets(self.field, lower, upper, STEP)
-        project(self.field, V, 1, STEP)
-        return V, F
+        return surface_nets(self.field, lower, upper, STEP)

@@ -8,8 +8,8 @@ from numba import njit
 from tempose.samples.field import FAR, Field, parts_near, value
 from tempose.typing import FloatArray, IntArray
 
-BLOCK = 4
-"""Grid steps along the side of a block that is looked at or skipped as a whole."""
+BLOCK = 8
+"""Grid points along the side of a cube that is looked at or skipped as a whole."""
 
 
 def surface_nets(
@@ -51,33 +51,56 @@ def surface_nets(
 
 @njit(cache=True, error_model="numpy")
 def _sample(field: Field, lower: FloatArray, step: float, blocks: IntArray) -> FloatArray:
+    """Field at grid points; far from the surface only its sign is right."""
     n = blocks * BLOCK
     grid = np.full((n[0], n[1], n[2]), np.float32(FAR))
     N = len(field.parent)
     core, drop, near = np.zeros(N + 8), np.zeros(N), np.zeros(len(field.kind), dtype=np.int64)
-    # the field is a distance only to first order: hence the factor beyond the half diagonal
-    reach = 1.5 * 0.5 * np.sqrt(3.0) * BLOCK * step
-    for bi in range(blocks[0]):
-        for bj in range(blocks[1]):
-            for bk in range(blocks[2]):
-                i0, j0, k0 = bi * BLOCK, bj * BLOCK, bk * BLOCK
-                half = 0.5 * (BLOCK - 1)
-                x = lower[0] + (i0 + half) * step
-                y = lower[1] + (j0 + half) * step
-                z = lower[2] + (k0 + half) * step
-                count = parts_near(field, x, y, z, half * step, near)
-                middle = value(field, near[:count], x, y, z, core, drop)
-                for i in range(i0, i0 + BLOCK):
-                    for j in range(j0, j0 + BLOCK):
-                        for k in range(k0, k0 + BLOCK):
-                            f = middle
-                            if abs(middle) < reach:
-                                x = lower[0] + i * step
-                                y = lower[1] + j * step
-                                z = lower[2] + k * step
-                                f = value(field, near[:count], x, y, z, core, drop)
-                            grid[i, j, k] = f
+    for block in range(blocks[0] * blocks[1] * blocks[2]):
+        i = block // (blocks[1] * blocks[2]) * BLOCK
+        j = block // blocks[2] % blocks[1] * BLOCK
+        k = block % blocks[2] * BLOCK
+        half = 0.5 * (BLOCK - 1) * step
+        corner = lower + step * np.array([float(i), float(j), float(k)])
+        count = parts_near(field, corner[0] + half, corner[1] + half, corner[2] + half, half, near)
+        if not _fill(field, near[:count], lower, step, grid, (i, j, k), BLOCK, core, drop):
+            continue
+        for c in range(8):
+            quarter = (i + 4 * (c & 1), j + 4 * (c >> 1 & 1), k + 4 * (c >> 2))
+            if not _fill(field, near[:count], lower, step, grid, quarter, 4, core, drop):
+                continue
+            for d in range(8):
+                pair = (quarter[0] + 2 * (d & 1), quarter[1] + 2 * (d >> 1 & 1), quarter[2] + 2 * (d >> 2))
+                if _fill(field, near[:count], lower, step, grid, pair, 2, core, drop):
+                    for e in range(8):
+                        point = (pair[0] + (e & 1), pair[1] + (e >> 1 & 1), pair[2] + (e >> 2))
+                        _fill(field, near[:count], lower, step, grid, point, 1, core, drop)
     return grid
+
+
+@njit(cache=True, error_model="numpy")
+def _fill(
+    field: Field,
+    near: IntArray,
+    lower: FloatArray,
+    step: float,
+    grid: FloatArray,
+    first: tuple[int, int, int],
+    size: int,
+    core: FloatArray,
+    drop: FloatArray,
+) -> bool:
+    """Fill a cube of grid points with the field at its centre; tell whether the surface may be in it."""
+    i, j, k = first
+    half = 0.5 * (size - 1)
+    x, y, z = lower[0] + (i + half) * step, lower[1] + (j + half) * step, lower[2] + (k + half) * step
+    f = value(field, near, x, y, z, core, drop)
+    for a in range(i, i + size):
+        for b in range(j, j + size):
+            for c in range(k, k + size):
+                grid[a, b, c] = f
+    # the field is a distance to first order only, and the cell beyond must be right, too
+    return abs(f) < 1.5 * 0.5 * np.sqrt(3.0) * (size + 0.5) * step
 
 
 @njit(cache=True, error_model="numpy")
