@@ -127,17 +127,27 @@ def contact_sheet(
     for at, done in zip(cells, in_order(picture, cells, workers)):
         pictures[at] = done
         progress(len(pictures), len(cells), "rendering")
-    labels = names or [clip.name for clip in shown]
-    rows = [
+    rows = _rows(pictures, chosen, shown, views, names)
+    return lay_out(rows, title, tone, None if span is None else Legend(*span, scalar_label, ramp))
+
+
+def _rows(
+    pictures: dict[tuple[int, int, int], Picture],
+    chosen: list[list[int]],
+    clips: list[MeshClip],
+    views: Sequence[Any],
+    names: Sequence[str] | None,
+) -> list[Row]:
+    labels = names or [clip.name for clip in clips]
+    return [
         Row(
             [pictures[c, v, t] for t in chosen[c]],
             [f"{t}   {t / clip.fps:.2f} s" for t in chosen[c]],
             " · ".join(w for w in (labels[c], view_label(view)) if w),
         )
-        for c, clip in enumerate(shown)
+        for c, clip in enumerate(clips)
         for v, view in enumerate(views)
     ]
-    return lay_out(rows, title, tone, None if span is None else Legend(*span, scalar_label, ramp))
 
 
 def _paths(
