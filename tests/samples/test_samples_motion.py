@@ -232,6 +232,27 @@ def test_bridge_meets_its_ends_and_passes_through_its_keys(via: np.ndarray, rng:
     assert_allclose(rows[4 : 4 + len(via)][known], via[known], atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda seed: walk(HUMAN, duration=1.5, speed=1.94, seed=seed),
+        lambda seed: run(HUMAN, duration=1.0, speed=1.81, seed=seed),
+        lambda seed: turn(HUMAN, duration=3.0, speed=1.6, angle=-2.0, rate=2.5, seed=seed),
+        lambda seed: jump(HUMAN, height=0.06, distance=0.9, seed=seed),
+        lambda seed: jump(HUMAN, height=0.65, distance=0.0, seed=seed),
+        lambda seed: animal_walk(ANIMAL, duration=1.5, speed=1.51, seed=seed),
+        lambda seed: gallop(ANIMAL, duration=0.8, speed=7.0, seed=seed),
+    ],
+)
+def test_extreme_wishes_and_other_performers_keep_their_feet_planted(make) -> None:
+    for seed in (0, 3):
+        motion = make(seed)
+        soles = sole_positions(motion)
+        both = motion.contacts[1:] & motion.contacts[:-1]
+        assert np.abs(np.diff(soles, axis=0)[both]).max() < 1e-9
+        assert soles[..., 1].min() > -1e-9
+
+
 def test_limb_reaches_its_target(rng: np.random.Generator) -> None:
     limb = human_leg(HUMAN, "left")
     flexion = rng.uniform(0.05, 2.0, 20)

@@ -90,7 +90,7 @@ def _galloping(H: float, period: float, pace: float) -> AnimalGait:
         via={
             "hind": (
                 degrees(at=0.25, flexion=29, pitch=95),
-                degrees(at=0.5, flexion=63, pitch=80),
+                degrees(at=0.5, flexion=54, pitch=80),
                 degrees(at=0.8, flexion=29, pitch=5),
             ),
             "fore": (

@@ -8,10 +8,10 @@ from scipy.interpolate import make_interp_spline
 from tempose.samples.oscillators import oscillator_step
 from tempose.typing import FloatArray
 
-FREQUENCY = 1.15
+FREQUENCY = 1.2
 """Of a free gore, Hz."""
 
-DAMPING = 0.22
+DAMPING = 0.28
 """Part of the critical damping: air and cloth."""
 
 CLOTH = 0.35
@@ -19,6 +19,9 @@ CLOTH = 0.35
 
 CONTACT = 14.0
 """Frequency of the spring by which a leg pushes a gore, Hz."""
+
+FLIGHT = 0.4
+"""Radians from rest or from the leg below beyond which a flying gore is slowed by the air and its own hem."""
 
 RATE = 720.0
 """Least number of steps a second."""
@@ -58,7 +61,9 @@ def swing_gores(force: FloatArray, fps: float, least: FloatArray | None) -> Floa
         legs, speed = curve(fine), curve(fine, 1) * fps
         state[:G] = angles[0] = np.maximum(0.0, least[0])
     for k in range(1, len(fine)):
-        push = _push(state[:G] - legs[k - 1], state[G:] - speed[k - 1])
+        push = _push(state[:G] - legs[k - 1], state[G:] - speed[k - 1], CONTACT)
+        high = np.maximum(legs[k - 1], 0.0) + FLIGHT
+        push -= _push(high - state[:G], np.minimum(speed[k - 1], 0.0) - state[G:], 0.25 * CONTACT)
         state = free @ np.concatenate([state, driving[k - 1] + push, driving[k] + push])
         if k % substeps == 0:
             angles[k // substeps] = state[:G]
@@ -73,9 +78,9 @@ def _cloth(G: int) -> tuple[FloatArray, FloatArray]:
     return omega**2 * (np.eye(G) + ties), omega * (2.0 * DAMPING * np.eye(G) + 0.04 * ties)
 
 
-def _push(gap: FloatArray, speed: FloatArray) -> FloatArray:
-    """Acceleration by which legs push gores that went inside them."""
-    omega = 2.0 * np.pi * CONTACT
+def _push(gap: FloatArray, speed: FloatArray, frequency: float) -> FloatArray:
+    """Acceleration by which gores are pushed back when their gap is negative."""
+    omega = 2.0 * np.pi * frequency
     inside = np.maximum(-gap, 0.0)
     # the damper sets in over the first hundredth of a radian, so that contact begins without a blow
     damper = np.maximum(-2.0 * omega * speed, 0.0) * np.minimum(inside / 0.01, 1.0)

@@ -31,14 +31,17 @@ from tempose.samples.motion_stances import Stance
 from tempose.samples.motion_timing import frame_times, performed
 from tempose.typing import FloatArray
 
+RECOVERY = 0.65
+"""Seconds from the lowest point of the landing to standing upright."""
+
 
 @dataclass(frozen=True)
 class JumpStyle:
     """What differs between performers."""
 
-    crouch: float = 0.30
+    crouch: float = 0.25
     """Depth of the crouch in leg lengths."""
-    absorb: float = 0.26
+    absorb: float = 0.22
     """Depth to which the landing yields."""
     arms: float = 120.0
     """How far the arms swing up, degrees."""
@@ -101,12 +104,12 @@ def _trajectory(
     L = leg_length(skeleton)
     x, _, home = rest_transforms(skeleton)[1][0]
     stand = standing_height(skeleton, stance_width(skeleton), radians(8))
-    up, down = stand + 0.085 * L, stand + 0.05 * L
+    up, down = stand + 0.078 * L, stand + 0.045 * L
     speed = sqrt(2.0 * GRAVITY * height)
     fall = -sqrt(speed**2 + 2.0 * GRAVITY * (up - down))
     low, deep = stand - style.crouch * L, stand - style.absorb * L * min(1.0, 0.6 + height)
     flight, push, absorb = (speed - fall) / GRAVITY, 2.0 * (up - low) / speed, 2.0 * (deep - down) / fall
-    t = np.cumsum([0.35, 0.55, push, flight, absorb, 0.65])
+    t = np.cumsum([0.35, 0.55, push, flight, absorb, RECOVERY])
     leave, arrive = 0.10 * L, distance - 0.06 * L
     drift = (arrive - leave) / flight
     rise = [
@@ -114,7 +117,7 @@ def _trajectory(
         [low, 0, 9],
         [up, speed, -GRAVITY],
         [down, fall, -GRAVITY],
-        [deep, 0, 12],
+        [deep, 0, 12.0 * (stand - deep) / RECOVERY**2],
         [stand, 0, 0],
     ]
     along = [[0, 0, 0], [-0.05 * L, 0, 0], [leave, drift, 0], [arrive, drift, 0]]
@@ -138,7 +141,7 @@ def _pose(style: JumpStyle, keys: FloatArray, height: float) -> Keyed:
     arm["elbow"] = keyed(t, (18, 25, 50, 35, 30, 40, 40, 18))
     arm["shrug"] = keyed(t, (0, 0, 4, 18, 18, 8, 2, 0))
     return Keyed(
-        tilt=keyed(t, (4, 0.95 * lean, 0.7 * lean, 8, 6, 16, 0.8 * lean, 4)),
+        tilt=keyed(t, (4, 0.6 * lean, 0.45 * lean, 8, 6, 12, 0.5 * lean, 4)),
         lean=keyed(t, (3, lean, 0.7 * lean, 4, 2, 16, 0.9 * lean, 3)),
         nod=keyed(t, (0, 10, 2, -12, 0, 15, 12, 0)),
         arms={"left": arm, "right": arm},

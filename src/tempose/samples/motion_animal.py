@@ -102,7 +102,7 @@ def hoof_roll(gait: AnimalGait, start: float) -> Roll:
 
 def _leg(skeleton: Skeleton, gait: AnimalGait, key: str, speed: float, duration: float) -> Leg:
     side, pair = key.split("_")
-    foot = make_foot(skeleton, f"{side}_{pair}_hoof", heel=-0.2)
+    foot = make_foot(skeleton, f"{side}_{pair}_hoof", heel=-0.33, toe=1.5)
     x, _, z = rest_transforms(skeleton)[1][foot.joint]
     stances: list[Stance] = []
     for stride in range(-3, ceil(duration / gait.period) + 3):

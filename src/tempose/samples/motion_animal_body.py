@@ -111,8 +111,8 @@ def _set_neck(
     late = style.neck + style.nod * wave(phase, style.nod_crest + 0.05, style.beats)
     rotations[:, skeleton.index("neck_1")] = about("x", 0.6 * level - 0.5 * pitch)
     rotations[:, skeleton.index("neck_2")] = about("x", 0.4 * late - 0.3 * pitch)
-    # the eyes keep the horizon: the head undoes most of the nod
-    rotations[:, skeleton.index("head")] = about("x", -0.75 * late)
+    # a lowered neck is stretched, nose ahead
+    rotations[:, skeleton.index("head")] = about("x", -1.3 * late)
 
 
 def _set_tail(skeleton: Skeleton, rotations: FloatArray, style: AnimalStyle, phase: FloatArray) -> None:

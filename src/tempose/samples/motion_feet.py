@@ -40,7 +40,9 @@ class Foot:
         return place + (self.ankle if joint == self.joint else self.hinge)
 
 
-def make_foot(skeleton: Skeleton, name: str, toes: str | None = None, heel: float = 0.4) -> Foot:
+def make_foot(
+    skeleton: Skeleton, name: str, toes: str | None = None, heel: float = 0.4, toe: float = 1.0
+) -> Foot:
     """Find the sole of a foot: ground is at height zero in the rest pose.
 
     Parameters
@@ -53,6 +55,8 @@ def make_foot(skeleton: Skeleton, name: str, toes: str | None = None, heel: floa
         Joint of the toes.
     heel : float, default 0.4
         How far the heel lies behind the ankle, as a part of the way from ankle to toes.
+    toe : float, default 1.0
+        How far ahead the foot touches the ground, as a part of the way to its tip.
 
     Returns
     -------
@@ -64,9 +68,9 @@ def make_foot(skeleton: Skeleton, name: str, toes: str | None = None, heel: floa
     ankle = np.array([0.0, positions[joint, 1], 0.0])
     last = joint if toes is None else skeleton.index(toes)
     assert skeleton.tips is not None
-    tip = skeleton.tips[last] * (1.0, 0.0, 1.0) + (0.0, -positions[last, 1], 0.0)
+    tip = skeleton.tips[last] * (1.0, 0.0, toe) + (0.0, -positions[last, 1], 0.0)
     if toes is None:
-        back = np.array([0.0, -positions[joint, 1], -tip[2] * heel])
+        back = np.array([0.0, -positions[joint, 1], -heel * float(skeleton.tips[last, 2])])
         soles = ((f"{name}_heel", joint, back), (f"{name}_tip", joint, tip))
         return Foot(joint, None, ankle, ankle + tip, soles)
     forward = skeleton.offsets[last]

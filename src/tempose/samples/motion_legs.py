@@ -33,7 +33,7 @@ class Leg:
 
     @property
     def clearance(self) -> float:
-        """Height of the sole over the ground in the middle of a swing that would otherwise graze it, metres."""
+        """Height of the sole in the middle of a swing that would otherwise graze the ground, metres."""
         return 0.015 * float(np.linalg.norm(self.limb.bones, axis=1).sum())
 
 

@@ -57,15 +57,15 @@ def secondary_motion(
         Skinned vertices, metres.
     soft : mapping of str to (n,) float
         How far each vertex takes part, 0 to 1, by name of region; the region called ``"skirt"`` swings as a
-        ring of pendulums round the hips, every other wobbles as flesh.
+        ring of pendulums round the hips wherever its weights would put it, every other wobbles as flesh.
     scale : float, default 1.0
         Factor on all displacements.
 
     Returns
     -------
     (T, n, 3) ndarray
-        Vertices in secondary motion, metres. The displacement is zero in the first frame and stays zero while
-        the body moves evenly in its rest pose.
+        Vertices in secondary motion, metres. The displacement is zero while the body stands or moves
+        evenly in its rest pose.
 
     Raises
     ------
@@ -82,7 +82,8 @@ def secondary_motion(
             continue
         part = SkinnedPart(skin.mesh.vertices[inside], skin.weights[inside], mask[inside])
         if name == "skirt":
-            moved[:, inside] += scale * swing_skirt(skin, clip, part.vertices, part.mask)
+            swing = swing_skirt(skin, clip, part.vertices, part.mask, moved[:, inside])
+            moved[:, inside] += scale * swing
         else:
             moved[:, inside] += scale * wobble(skin, clip, part, FLESH.get(name, FLESH["belly"]))
     return moved

@@ -40,8 +40,10 @@ class SkirtShape:
     """(G,) metres."""
 
 
-def swing_skirt(skin: SkinnedMesh, clip: SkeletonClip, vertices: FloatArray, mask: FloatArray) -> FloatArray:
-    """Displacement of the vertices of a skirt from where the hips alone would carry them.
+def swing_skirt(
+    skin: SkinnedMesh, clip: SkeletonClip, vertices: FloatArray, mask: FloatArray, skinned: FloatArray
+) -> FloatArray:
+    """Displace the vertices of a skirt to where it hangs from the hips, whatever joints they are bound to.
 
     Parameters
     ----------
@@ -52,24 +54,28 @@ def swing_skirt(skin: SkinnedMesh, clip: SkeletonClip, vertices: FloatArray, mas
     vertices : (k, 3) float
         Vertices of the skirt at rest, metres.
     mask : (k,) float
-        How far each takes part, 0 to 1.
+        How far each belongs to it, 0 to 1: the shape is taken from those above one half.
+    skinned : (T, k, 3) float
+        The same vertices skinned, metres.
 
     Returns
     -------
     (T, k, 3) ndarray
-        Metres.
+        Metres to add to the skinned vertices; nothing near the axis, where a lining goes with the legs.
     """
     hips = skin.skeleton.index("hips")
     local = vertices - rest_transforms(skin.skeleton)[1][hips]
-    shape = measure_skirt(local)
+    shape = measure_skirt(local[mask > 0.5])
     world, position = forward_kinematics(skin.skeleton, clip.rotations, clip.root_position)
     out, aside = gore_forces(shape, world[:, hips], position[:, hips], clip.fps)
+    least = least_angles(skin, clip, shape) - shape.slope
     # the pelvis is in the way, too: a gore never swings in by more than a part of its slope
-    least = np.maximum(least_angles(skin, clip, shape) - shape.slope, -0.5 * np.abs(shape.slope))
+    least = np.maximum(least, -0.5 * np.abs(shape.slope))
     outward = swing_gores(out, clip.fps, least)
     sideways = swing_gores(aside, clip.fps, None)
-    moved = mask[:, None] * _displace(shape, local, outward, sideways)
-    return rotate(world[:, hips, None], moved)
+    moved, outer = _swing(shape, local, outward, sideways)
+    swung = position[:, hips, None] + rotate(world[:, hips, None], local + moved)
+    return (mask * outer)[:, None] * (swung - skinned)
 
 
 def measure_skirt(local: FloatArray) -> SkirtShape:
@@ -97,14 +103,20 @@ def measure_skirt(local: FloatArray) -> SkirtShape:
 
 
 def _outline(points: FloatArray, azimuth: FloatArray) -> FloatArray:
-    """Distance from the axis as a smooth function of direction, by least squares."""
+    """Distance of the outer side from the axis as a smooth function of direction."""
 
     def basis(angle: FloatArray) -> FloatArray:
         return np.stack([f(k * angle) for k in range(3) for f in (np.cos, np.sin)], axis=1)
 
     angle = np.arctan2(points[:, 0], points[:, 2])
     distance = np.hypot(points[:, 0], points[:, 2])
-    return basis(azimuth) @ np.linalg.lstsq(basis(angle), distance, rcond=None)[0]
+    outer = np.ones(len(points), dtype=bool)
+    curve = np.zeros(6)
+    for _ in range(3):
+        curve = np.linalg.lstsq(basis(angle[outer]), distance[outer], rcond=None)[0]
+        # what lies further in is the lining, or the hollow for the legs
+        outer = distance > basis(angle) @ curve - 0.1 * distance.mean()
+    return basis(azimuth) @ curve
 
 
 def gore_forces(
@@ -142,23 +154,24 @@ def gore_forces(
     return np.sum(pull * outward, axis=-1), np.sum(pull * along, axis=-1)
 
 
-def _displace(shape: SkirtShape, local: FloatArray, outward: FloatArray, sideways: FloatArray) -> FloatArray:
-    """Turn each vertex about the waist by the angles of the gores beside it, in the basis of the hips."""
+def _swing(
+    shape: SkirtShape, local: FloatArray, outward: FloatArray, sideways: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Turn each vertex about the waist with the gores beside it; say how far out it lies, 0 to 1."""
     d = local - shape.centre
-    azimuth = np.arctan2(d[:, 0], d[:, 2])
+    azimuth, distance, depth = np.arctan2(d[:, 0], d[:, 2]), np.hypot(d[:, 0], d[:, 2]), -d[:, 1]
     shares = _shares(azimuth)
     out, aside = outward @ shares.T, sideways @ shares.T
-    depth = -d[:, 1]
-    lean = ease(depth / (0.3 * depth.max()))
-    radius = np.hypot(d[:, 0], d[:, 2]) - shares @ shape.waist
-    turned = lean * out
-    new_radius = np.cos(turned) * radius + np.sin(turned) * depth
-    new_depth = np.cos(turned) * depth - np.sin(turned) * radius
-    radial = np.stack([np.sin(azimuth), 0 * azimuth, np.cos(azimuth)], axis=1)
-    along = np.stack([np.cos(azimuth), 0 * azimuth, -np.sin(azimuth)], axis=1)
-    moved = (new_radius - radius)[..., None] * radial + (lean * depth * np.tanh(aside))[..., None] * along
-    moved[..., 1] -= new_depth - depth
-    return moved
+    waist = shares @ shape.waist
+    turned = ease(depth / (0.3 * depth.max())) * out
+    radius = distance - waist
+    wider = np.cos(turned) * radius + np.sin(turned) * depth - radius
+    deeper = np.cos(turned) * depth - np.sin(turned) * radius - depth
+    along = ease(depth / (0.3 * depth.max())) * depth * np.tanh(aside)
+    sine, cosine = np.sin(azimuth), np.cos(azimuth)
+    moved = np.stack([wider * sine + along * cosine, -deeper, wider * cosine - along * sine], axis=-1)
+    full = waist + np.maximum(depth, 0.0) * (shares @ np.tan(shape.slope))
+    return moved, ease((distance / full - 0.35) / 0.45)
 
 
 def _shares(azimuth: FloatArray) -> FloatArray:
