@@ -57,7 +57,8 @@ def skin_weights(
         here = np.flatnonzero(shares[:, k] > 0.0)
         joints = [skeleton.index(name) for name in node.chain]
         widths = np.array([softness[name] for name in node.chain])
-        along = chain_weights(positions[joints], widths, V[here])
+        tip = np.zeros(3) if skeleton.tips is None else np.nan_to_num(skeleton.tips[joints[-1]])
+        along = chain_weights(positions[joints], widths, V[here], tip)
         weights[here[:, None], joints] += shares[here, k : k + 1] * along
     return _sparse(weights)
 
@@ -80,7 +81,9 @@ def node_shares(field: Field, V: FloatArray) -> FloatArray:
     return mixture(field, V, WIDEN, np.eye(len(field.parent))[field.node])
 
 
-def chain_weights(joints: FloatArray, softness: FloatArray, V: FloatArray) -> FloatArray:
+def chain_weights(
+    joints: FloatArray, softness: FloatArray, V: FloatArray, tip: FloatArray | None = None
+) -> FloatArray:
     """Weights along one chain: a smooth step across the bisecting plane of every joint.
 
     Parameters
@@ -91,6 +94,9 @@ def chain_weights(joints: FloatArray, softness: FloatArray, V: FloatArray) -> Fl
         Half the width of the step at each, metres; that of the first is not used.
     V : (n, 3) float
         Points, metres.
+    tip : (3,) float, optional
+        From the last joint to the end of its bone, metres: a horse's head hangs from its neck. Not given or
+        zero, the last bone goes on straight.
 
     Returns
     -------
@@ -98,6 +104,8 @@ def chain_weights(joints: FloatArray, softness: FloatArray, V: FloatArray) -> Fl
         Rows are non-negative and sum to 1.
     """
     bones = np.diff(joints, axis=0)
+    if tip is not None and tip.any():
+        bones = np.vstack([bones, tip])
     bones /= np.linalg.norm(bones, axis=1, keepdims=True)
     weights = np.zeros((len(V), len(joints)))
     left = np.ones(len(V))
