@@ -166,8 +166,9 @@ def _target_pose(mesh: Mesh, basis: FloatArray, bones: Bones, pairs: Pairs) -> B
 
 def _pelvis(mesh: Mesh, basis: FloatArray, bones: Bones, target: BonePose) -> Anchor:
     """Pelvis: the midpoint of the hip joints, carried by the vertices of the root bone."""
-    weights = np.where(basis[:, 0] > 0.5, basis[:, 0], 0.0)
-    weights = weights if weights.sum() > 0 else np.maximum(basis[:, 0], 1e-9)
+    # only where the root bone alone rules: a skirt hangs on the hips too, but swings with the thighs
+    weights = np.where(basis[:, 0] > 0.95, basis[:, 0], 0.0)
+    weights = weights if weights.sum() > 0 else np.maximum(basis[:, 0], 1e-9) ** 4
     return Anchor(weights / weights.sum(), 0, _anchor_points(bones, target))
 
 

@@ -11,6 +11,7 @@ RING_PLACES = (0.27, 0.73)
 """Where along a bone the rings lie; nearer to the joints bends sharper."""
 RING_SIZE = 12
 """Marked faces a ring."""
+_LAYER, _OUTLIER = 1.25, 2.0
 RIGID_PARTS = ("head", "hand", "foot", "toes")
 """Parts that move as a whole: all their faces are marked."""
 
@@ -116,12 +117,18 @@ def _crossing(along: FloatArray, s: float) -> BoolArray:
 
 
 def _ring(offsets: FloatArray, axis: FloatArray, faces: IntArray) -> IntArray:
-    """Pick faces evenly by angle round the axis, nearest to the middle of each sector."""
+    """Pick faces evenly by angle round the axis, of the innermost layer: the leg under a skirt."""
     u = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
     u = u / np.linalg.norm(u)
-    angle = np.arctan2(offsets @ np.cross(axis, u), offsets @ u)
+    x, y = offsets @ u, offsets @ np.cross(axis, u)
+    angle, radius = np.arctan2(y, x), np.hypot(x, y)
     sector = np.floor((angle + np.pi) / (2 * np.pi) * RING_SIZE).astype(int) % RING_SIZE
+    nearest = np.full(RING_SIZE, np.inf)
+    np.minimum.at(nearest, sector, radius)
+    typical = float(np.median(nearest[np.isfinite(nearest)]))
+    inner = radius <= np.minimum(_LAYER * nearest[sector], _OUTLIER * typical)
     middle = (sector + 0.5) / RING_SIZE * 2 * np.pi - np.pi
-    order = np.lexsort((np.abs(angle - middle), sector))
+    order = np.lexsort((np.abs(angle - middle), ~inner, sector))
     _, first = np.unique(sector[order], return_index=True)
-    return faces[order[first]]
+    chosen = order[first]
+    return faces[chosen[inner[chosen]]]
