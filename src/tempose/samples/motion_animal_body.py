@@ -112,7 +112,7 @@ def _set_neck(
     rotations[:, skeleton.index("neck_1")] = about("x", 0.6 * level - 0.5 * pitch)
     rotations[:, skeleton.index("neck_2")] = about("x", 0.4 * late - 0.3 * pitch)
     # a lowered neck is stretched, nose ahead
-    rotations[:, skeleton.index("head")] = about("x", -1.3 * late)
+    rotations[:, skeleton.index("head")] = about("x", -1.0 * late)
 
 
 def _set_tail(skeleton: Skeleton, rotations: FloatArray, style: AnimalStyle, phase: FloatArray) -> None:

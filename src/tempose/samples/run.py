@@ -89,8 +89,8 @@ def running_style(L: float, seed: int | None) -> BodyStyle:
         arm_offset=radians(-12),
         elbow=radians(88),
         elbow_swing=radians(10),
-        abduction=radians(13),
-        twist=radians(20),
+        abduction=radians(17),
+        twist=radians(10),
         shrug=radians(2),
     )
     return performed(style, seed, STYLE_FIELDS)
