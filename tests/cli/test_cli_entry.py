@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -140,6 +141,23 @@ def test_ctrl_c_while_reading(tmp_path: Path) -> None:
         os.close(writer)
     assert process.returncode == 130
     assert (out, err) == (b"", b"tempose: interrupted; nothing was written under its final name\n")
+
+
+def test_interrupt_that_got_lost_is_raised_at_the_next_progress(
+    run: Callable[..., object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def swallow(path: str, progress: Callable[[int, int, str], None], **_: object) -> None:
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        progress(1, 2, "reading")
+        raise AssertionError("went on after Ctrl-C")
+
+    before = signal.getsignal(signal.SIGINT)
+    monkeypatch.setattr(tempose, "load", swallow)
+    assert run("info", "anything.obj").code == 130
+    assert signal.getsignal(signal.SIGINT) is before
+    monkeypatch.undo()
+    assert run("info", tmp_path / "nothing.obj").code == 2, "one Ctrl-C ends one command"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no pipes of that kind")

@@ -12,7 +12,8 @@ from typing import Any
 
 import typer
 
-from tempose.typing import Progress, silent
+from tempose.cli.interrupts import stop_if_interrupted
+from tempose.typing import Progress
 
 
 def note(text: str) -> None:
@@ -34,10 +35,10 @@ def progress_bar() -> Generator[Progress, None, None]:
     Yields
     ------
     Progress
-        Callback for library functions; does nothing where standard error is not a terminal.
+        Callback for library functions; shows nothing where standard error is not a terminal.
     """
     if not sys.stderr.isatty():
-        yield silent
+        yield lambda done, total, stage: stop_if_interrupted()
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
@@ -48,6 +49,7 @@ def progress_bar() -> Generator[Progress, None, None]:
         tasks: dict[str, Any] = {}
 
         def show(done: int, total: int, stage: str) -> None:
+            stop_if_interrupted()
             if stage not in tasks:
                 tasks[stage] = bars.add_task(stage, total=total or None)
             bars.update(tasks[stage], completed=done, total=total or None)

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _CELL = 200
 _MOMENTS = 7
 _FILM = (280, 340)
+_FILMED = 48
+"""Frames of a clip that its film shows, every second one."""
 
 
 def demo(  # numpydoc ignore=PR01
@@ -76,7 +78,7 @@ def _draw(case: Case, result: TransferResult, folder: Path, progress: Progress) 
     look: dict[str, Any] = {"names": names, "cell": _CELL, "frames": _MOMENTS}
     tempose.render.render(shown, folder / f"{case.name}.png", progress=progress, **look)
     if case.film:
-        fewer = [select_frames(clip, step=2) for clip in shown]
+        fewer = [select_frames(clip, stop=min(_FILMED, clip.n_frames), step=2) for clip in shown]
         tempose.render.render(fewer, folder / f"{case.name}.mp4", progress=progress, size=_FILM)
 
 

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from tempose.cli.interrupts import remembering_interrupts
+
 BAD_INPUT = 2
 INTERRUPTED = 130
 DEFECT = 1
@@ -28,10 +30,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         failure writes exactly one line to standard error.
     """
     try:
-        from tempose.cli.app import command
+        with remembering_interrupts():
+            from tempose.cli.app import command
 
-        code: Any = command(args=arguments, prog_name="tempose", standalone_mode=False)
-        sys.stdout.flush()
+            code: Any = command(args=arguments, prog_name="tempose", standalone_mode=False)
+            sys.stdout.flush()
     except KeyboardInterrupt:
         code = INTERRUPTED
     except Exception as error:
