@@ -11,7 +11,7 @@ RING_PLACES = (0.27, 0.73)
 """Where along a bone the rings lie; nearer to the joints bends sharper."""
 RING_SIZE = 12
 """Marked faces a ring."""
-_LAYER, _OUTLIER = 1.25, 2.0
+_LAYER, _OUTLIER, _OUTER = 1.25, 1.7, 1.7
 RIGID_PARTS = ("head", "hand", "foot", "toes")
 """Parts that move as a whole: all their faces are marked."""
 
@@ -117,18 +117,24 @@ def _crossing(along: FloatArray, s: float) -> BoolArray:
 
 
 def _ring(offsets: FloatArray, axis: FloatArray, faces: IntArray) -> IntArray:
-    """Pick faces evenly by angle round the axis, of the innermost layer: the leg under a skirt."""
+    """Pick faces evenly by angle: of the innermost layer, and of a skirt that hangs round it."""
     u = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
     u = u / np.linalg.norm(u)
     x, y = offsets @ u, offsets @ np.cross(axis, u)
     angle, radius = np.arctan2(y, x), np.hypot(x, y)
     sector = np.floor((angle + np.pi) / (2 * np.pi) * RING_SIZE).astype(int) % RING_SIZE
+    middle = (sector + 0.5) / RING_SIZE * 2 * np.pi - np.pi
     nearest = np.full(RING_SIZE, np.inf)
     np.minimum.at(nearest, sector, radius)
     typical = float(np.median(nearest[np.isfinite(nearest)]))
     inner = radius <= np.minimum(_LAYER * nearest[sector], _OUTLIER * typical)
-    middle = (sector + 0.5) / RING_SIZE * 2 * np.pi - np.pi
-    order = np.lexsort((np.abs(angle - middle), ~inner, sector))
-    _, first = np.unique(sector[order], return_index=True)
-    chosen = order[first]
-    return faces[chosen[inner[chosen]]]
+    chosen = [
+        _one_a_sector(layer, sector, np.abs(angle - middle)) for layer in (inner, radius > _OUTER * typical)
+    ]
+    return faces[np.concatenate(chosen)]
+
+
+def _one_a_sector(allowed: BoolArray, sector: IntArray, distance: FloatArray) -> IntArray:
+    order = np.lexsort((distance, sector))
+    order = order[allowed[order]]
+    return order[np.unique(sector[order], return_index=True)[1]]

@@ -147,7 +147,7 @@ def _slip_steps(
         return np.zeros((T - 1, 2))
     mean = total[known] / count[known, None]
     filled = np.column_stack([np.interp(np.arange(T - 1), known, mean[:, k]) for k in range(2)])
-    return _smooth(filled, max(1, round(fps / 60)))
+    return _smooth(filled, round(fps / 60))
 
 
 def _smooth(x: FloatArray, reach: int) -> FloatArray:
