@@ -149,6 +149,7 @@ def summary_rows(report: dict[str, Any]) -> list[tuple[str, str]]:
                 f"{report['flipped_percent']:.3f} %, {report['folded_percent']:.3f} %",
             )
         )
+    if report.get("volume_worst") is not None:
         rows.append(("volume, worst frame", f"{report['volume_worst']:+.1f} %"))
     if report.get("skate") is not None:
         rows.append(

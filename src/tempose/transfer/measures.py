@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tempose.geometry import weld
 from tempose.metrics import direction_angles, edge_ratios, flipped_percent, folded_percent, penetration, skate
 from tempose.metrics import volume_change as change_of_volume
 from tempose.rotations import normalise
@@ -43,7 +44,8 @@ def distortion_measures(
     -------
     dict
         ``edge_ratio`` [p1, p99], ``edge_ratio_max``, ``flipped_percent`` and ``folded_percent`` (means over
-        frames), ``volume`` (percent change a frame), ``quaternion_norm_min``.
+        frames), ``volume`` (percent change a frame; None for a surface that encloses nothing),
+        ``quaternion_norm_min``.
     """
     F, V_rest = solver.mesh.faces, solver.mesh.vertices
     ratios = edge_ratios(V, F, V_rest, faces=faces)
@@ -53,16 +55,27 @@ def distortion_measures(
         norms[t : t + _BLOCK] = np.linalg.norm(q, axis=-1).min(axis=1)
         turns = normalise(q[:, F].sum(axis=2))
         flipped[t : t + _BLOCK] = flipped_percent(V[t : t + _BLOCK], F, V_rest, turns)
-    volume = change_of_volume(V, F, V_rest)
     return {
         "edge_ratio": [ratios.p1, ratios.p99],
         "edge_ratio_max": ratios.max,
         "flipped_percent": float(flipped.mean()),
         "folded_percent": float(folded_percent(V, F, V_rest).mean()),
+        **_volume_measures(V, F, V_rest),
+        "quaternion_norm_min": float(norms.min()),
+    }
+
+
+def _volume_measures(V: FloatArray, F: IntArray, V_rest: FloatArray) -> dict[str, Any]:
+    # texture seams split a closed surface into open pieces: welded, it encloses its volume again
+    first, inverse = weld(V_rest)
+    try:
+        volume = change_of_volume(V[:, first], inverse[F], V_rest[first])
+    except ValueError:  # a sheet encloses nothing
+        return {"volume": None, "volume_worst": None, "volume_mean": None}
+    return {
         "volume": [round(float(v), 4) for v in volume],
         "volume_worst": float(volume[np.abs(volume).argmax()]),
         "volume_mean": float(volume.mean()),
-        "quaternion_norm_min": float(norms.min()),
     }
 
 
