@@ -244,7 +244,7 @@ def message_of(path: Path) -> str:
     return ""
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(mutated())
 def test_damaged_lists_are_read_or_refused(tmp_path_factory, case: tuple[str, str]) -> None:
     suffix, text = case
@@ -253,7 +253,7 @@ def test_damaged_lists_are_read_or_refused(tmp_path_factory, case: tuple[str, st
     assert message_of(path).startswith(str(path)) or not message_of(path)
 
 
-@settings(max_examples=150)
+@settings(max_examples=30)
 @given(st.sampled_from(sorted(GOOD)), st.one_of(st.text(), st.binary()))
 def test_any_text_at_all_is_read_or_refused(tmp_path_factory, suffix: str, text: str | bytes) -> None:
     path = tmp_path_factory.getbasetemp() / ("any" + suffix)
@@ -261,7 +261,7 @@ def test_any_text_at_all_is_read_or_refused(tmp_path_factory, suffix: str, text:
     assert message_of(path).startswith(str(path)) or not message_of(path)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(
     st.lists(st.tuples(st.text(max_size=8), st.integers(0, 2**31 - 1)), min_size=1, max_size=8),
     st.booleans(),

@@ -15,9 +15,10 @@ LINK = 5.0
 TRACE = 1e-7
 
 
-def cotangent(a: np.ndarray, b: np.ndarray) -> float:
-    area = np.linalg.norm(np.cross(a, b))
-    return float(a @ b / area) if area > 1e-14 else 0.0
+def cotangent(a: list[float], b: list[float]) -> float:
+    cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    area = sum(x * x for x in cross) ** 0.5
+    return sum(x * y for x, y in zip(a, b)) / area if area > 1e-14 else 0.0
 
 
 def face_matrix(corners: np.ndarray) -> np.ndarray:
@@ -25,7 +26,7 @@ def face_matrix(corners: np.ndarray) -> np.ndarray:
     L = np.zeros((3, 3))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        w = 0.5 * cotangent(corners[i] - corners[k], corners[j] - corners[k])
+        w = 0.5 * cotangent((corners[i] - corners[k]).tolist(), (corners[j] - corners[k]).tolist())
         L[[i, j], [j, i]] -= w
         L[[i, j], [i, j]] += w
     return L
@@ -110,10 +111,8 @@ def test_the_fast_way_is_the_slow_way(name: str, strength: float, rng) -> None:
     vertices = np.r_[vertices, np.repeat(mesh.faces[7, 0], 4)]
     bones = np.r_[bones, [0, 1, 1, 4]]
     solver = MotionTransfer(mesh, vertices, bones, 5, volume=strength)
-    Q = near_rotations(rng, (2, 5), 100)
-    fast, field = solver.pose(Q), solver.field(Q)
-    for t in range(2):
-        q, V = slow_pose(mesh, vertices, bones, solver.links.pairs, Q[t], strength)
-        assert_allclose(field[:, :, t], q, rtol=0, atol=1e-9)
-        moved = fast[t] - fast[t][0]
-        assert_allclose(moved, V, rtol=0, atol=1e-9 * mesh.diagonal)
+    Q = near_rotations(rng, (1, 5), 100)
+    q, V = slow_pose(mesh, vertices, bones, solver.links.pairs, Q[0], strength)
+    assert_allclose(solver.field(Q)[:, :, 0], q, rtol=0, atol=1e-9)
+    fast = solver.pose(Q)[0]
+    assert_allclose(fast - fast[0], V, rtol=0, atol=1e-9 * mesh.diagonal)

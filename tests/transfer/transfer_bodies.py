@@ -113,7 +113,7 @@ def _radius(name: str) -> float:
     return _RADII.get(name.split("_", 1)[-1], 0.045)
 
 
-def inflate(skeleton: Skeleton, step: float = 0.03) -> SkinnedMesh:
+def inflate(skeleton: Skeleton, step: float = 0.04) -> SkinnedMesh:
     """A closed body round the bones: boundary of the cells near them, smoothed; weights by nearness."""
     bones = segments(skeleton)
     ends = np.concatenate([np.stack([a, b]) for _, a, b in bones])
