@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 import tempose
+from tempose.cli import options as given
 from tempose.cli.console import note, progress_bar, writing
-from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Group, Topology, check_out, load
+from tempose.cli.options import check_out, load
 
 if TYPE_CHECKING:
     from tempose.clips import Mesh, MeshClip
@@ -17,44 +16,21 @@ if TYPE_CHECKING:
 
 
 def convert(  # numpydoc ignore=PR01
-    source: Annotated[
-        str, typer.Argument(metavar="IN", help="File, folder of frames, glob, or name.####.obj.")
-    ],
-    out: Annotated[
-        Path,
-        typer.Argument(
-            metavar="OUT", help="Its ending chooses the format; a folder or name.####.obj takes frames."
-        ),
-    ],
-    fps: Annotated[
-        float | None,
-        typer.Option(
-            metavar="F",
-            help="Rate of the output; frames are interpolated. An input without a rate takes it as its own.",
-        ),
-    ] = None,
-    start: Annotated[int | None, typer.Option(metavar="FRAME", help="First frame kept, 0-based.")] = None,
-    stop: Annotated[int | None, typer.Option(metavar="FRAME", help="First frame left out.")] = None,
-    step: Annotated[
-        int | None, typer.Option(metavar="N", help="Keep every N-th frame, at the same speed.")
-    ] = None,
-    up: Annotated[str | None, typer.Option(metavar="x|y|z", help="Up axis of the output.")] = None,
-    unit: Annotated[
-        str | None,
-        typer.Option(metavar="UNIT", help="Unit of the output: mm, cm, dm, m, in, ft, or metres per unit."),
-    ] = None,
-    tolerance: Annotated[
-        float | None,
-        typer.Option(
-            metavar="P", help="Percent of the diagonal by which a compact GLB may be off; else lossless."
-        ),
-    ] = None,
-    group: Group = None,
-    clip: Clip = None,
-    topology: Topology = None,
-    from_up: FromUp = None,
-    from_unit: FromUnit = None,
-    from_fps: FromFps = None,
+    source: given.Input,
+    out: given.OutClip,
+    fps: given.Fps = None,
+    start: given.Start = None,
+    stop: given.Stop = None,
+    step: given.Step = None,
+    up: given.Up = None,
+    unit: given.UnitOption = None,
+    tolerance: given.Tolerance = None,
+    group: given.Group = None,
+    clip: given.Clip = None,
+    topology: given.Topology = None,
+    from_up: given.FromUp = None,
+    from_unit: given.FromUnit = None,
+    from_fps: given.FromFps = None,
 ) -> None:
     """Write a mesh or a clip in another format, rate, unit or up axis."""
     check_out(out)

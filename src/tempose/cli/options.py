@@ -31,6 +31,34 @@ Topology = Annotated[
     Path | None,
     typer.Option(metavar="MESH", help="Mesh whose faces belong to the input, where it holds positions only."),
 ]
+OutClip = Annotated[
+    Path,
+    typer.Argument(
+        metavar="OUT", help="Its ending chooses the format; a folder or name.####.obj takes frames."
+    ),
+]
+Input = Annotated[str, typer.Argument(metavar="IN", help="File, folder of frames, glob, or name.####.obj.")]
+Fps = Annotated[
+    float | None,
+    typer.Option(
+        metavar="F",
+        help="Rate of the output; frames are interpolated. An input without a rate takes it as its own.",
+    ),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="P", help="Percent of the diagonal by which a compact GLB may be off; else lossless."
+    ),
+]
+Start = Annotated[int | None, typer.Option(metavar="FRAME", help="First frame kept, 0-based.")]
+Stop = Annotated[int | None, typer.Option(metavar="FRAME", help="First frame left out.")]
+Step = Annotated[int | None, typer.Option(metavar="N", help="Keep every N-th frame, at the same speed.")]
+Up = Annotated[str | None, typer.Option(metavar="x|y|z", help="Up axis of the output.")]
+UnitOption = Annotated[
+    str | None,
+    typer.Option(metavar="UNIT", help="Unit of the output: mm, cm, dm, m, in, ft, or metres per unit."),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
 
 
