@@ -66,10 +66,10 @@ def test_many_scattered_pieces_become_one_component_in_any_unit(unit: float, rng
 
 
 def test_near_vertices_of_other_pieces_are_linked_as_brute_force_finds_them() -> None:
-    # two curved sheets, one above the other, cross: many pairs are within the radius
+    # two curved sheets cross at a small angle; a third piece far off makes the radius several edges wide
     a = sheet(14)
-    b = a.with_vertices(a.vertices @ Rotation.from_euler("x", 0.6, degrees=True).as_matrix().T + 0.0007)
-    mesh = joined(a, b, moved(sheet(4), (0.5, 2.0, 0.1)))
+    b = a.with_vertices(a.vertices @ Rotation.from_euler("x", 6, degrees=True).as_matrix().T + 0.013)
+    mesh = joined(a, b, moved(sheet(4), (0.5, 40.0, 0.1)))
     V, n = mesh.vertices, len(a.vertices)
     D = np.linalg.norm(np.ptp(V, axis=0))
     links = as_set(link_pieces(V, mesh.faces))
@@ -80,7 +80,9 @@ def test_near_vertices_of_other_pieces_are_linked_as_brute_force_finds_them() ->
         if gap.min() <= LINK_RADIUS * D:
             j = int(others[gap.argmin()])
             expected.add((min(i, j), max(i, j)))
-    assert len(expected) > 20
+    assert len(expected) > 100
+    within = np.linalg.norm(V[:n, None] - V[None, n : 2 * n], axis=2) <= LINK_RADIUS * D
+    assert within.sum() > 2 * len(expected)
     assert {pair for pair in links if pair[1] < 2 * n} == expected
 
 

@@ -81,6 +81,28 @@ def test_a_stout_bone_has_its_rings_across_what_it_covers() -> None:
         assert crossing.sum() >= RING_SIZE
 
 
+def test_faces_beyond_the_joint_do_not_move_the_rings() -> None:
+    """The tube reaches below where its lower bone begins: places are measured from the joint."""
+    V, F, weights, starts, ends = two_bones()
+    starts[1], ends[1] = [0, 0.3, 0], [0, 0.9, 0]
+    faces, bones = mark_bones(V, F, weights, ("", "left_shin"), starts, ends)
+    y = V[F[faces[bones == 1]]][:, :, 1]
+    for place in (0.3 + 0.27 * 0.6, 0.3 + 0.73 * 0.6):
+        assert ((y.min(axis=1) <= place) & (y.max(axis=1) >= place)).sum() >= RING_SIZE
+    assert y.min() > 0.3
+
+
+def test_a_limb_and_the_cloth_round_it_are_both_marked() -> None:
+    """A leg inside a wide skirt, both weighted to one bone: a ring on either."""
+    leg, skirt = tube(41, 36, 2.0, 0.1), tube(41, 36, 2.0, 0.3)
+    n, m = len(leg.vertices), len(leg.faces)
+    wall = skirt.faces[(skirt.faces < 41 * 36).all(axis=1)]
+    V, F = np.concatenate([leg.vertices, skirt.vertices]), np.concatenate([leg.faces, wall + n])
+    ends = np.array([[0, 2.0, 0]])
+    faces, _ = mark_bones(V, F, np.ones((2 * n, 1)), ("left_thigh",), np.zeros((1, 3)), ends, (0.5,))
+    assert ((faces < m).sum(), (faces >= m).sum()) == (RING_SIZE, RING_SIZE)
+
+
 @pytest.mark.parametrize("part", RIGID_PARTS)
 def test_end_parts_are_marked_whole(part: str) -> None:
     V, F, weights, starts, ends = two_bones()

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 from transfer_bodies import clip_of, human_body
-from transfer_zoo import marked, sphere, wxyz
+from transfer_zoo import marked, sheet, sphere, wxyz
 
 from tempose.clips import Mesh
 from tempose.kinematics.roles import find_roles
@@ -56,6 +56,27 @@ def test_swelling_is_seen_in_edges_and_volume() -> None:
     assert_allclose(found["volume"], [0, 33.1, -27.1], atol=1e-3)
     assert found["volume_worst"] == pytest.approx(33.1)
     assert found["volume_mean"] == pytest.approx(2.0)
+
+
+def test_a_texture_seam_does_not_open_the_volume_and_a_sheet_has_none() -> None:
+    ball = sphere(1)
+    n = len(ball.vertices)
+    # the first faces have vertices of their own, at the same places
+    F = np.array(ball.faces)
+    F[:20] += n
+    torn = Mesh(np.concatenate([ball.vertices, ball.vertices]), F)
+    Q = np.tile([1.0, 0, 0, 0], (1, 4, 1))
+    found = distortion_measures(
+        MotionTransfer(torn, *marked(torn), 4), 1.1 * np.array(torn.vertices)[None], Q, None
+    )
+    assert found["volume"] == pytest.approx([33.1], abs=1e-3)
+    curved = sheet(4)
+    flat = curved.with_vertices(curved.vertices * np.array([1.0, 0, 1]))
+    found = distortion_measures(
+        MotionTransfer(flat, *marked(flat), 4), np.array(flat.vertices)[None], Q, None
+    )
+    assert found["volume"] is found["volume_worst"] is found["volume_mean"] is None
+    assert found["edge_ratio"] == pytest.approx([1, 1])
 
 
 def test_only_the_asked_faces_count_for_edges() -> None:
