@@ -7,6 +7,7 @@ import logging
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pooch
 
@@ -50,7 +51,7 @@ def _fetch_file(file: RemoteFile, folder: Path, host: str, timeout: float) -> No
     if path.is_file() and _digest(path) == file.sha256:
         return
     url = f"{host}/{file.address}"
-    downloader = pooch.HTTPDownloader(progressbar=False, timeout=timeout)
+    downloader: Any = pooch.HTTPDownloader(progressbar=False, timeout=timeout)
     by_hand = f"its files may be put by hand in {folder}"
     try:
         with _quiet_pooch():
