@@ -13,6 +13,7 @@ from tempose.samples.animal_legs import fore_leg, hind_leg
 from tempose.samples.parts import Node, Part, ease, sided
 from tempose.samples.sculpture import Sculpture
 from tempose.samples.skeletons import WITHERS, animal_skeleton
+from tempose.samples.uv_charts import ChartRule
 from tempose.typing import FloatArray
 
 SPINE = ("hips", "spine_1", "spine_2", "spine_3", "chest", "neck_1", "neck_2", "head")
@@ -47,6 +48,7 @@ def sculpt_animal() -> Sculpture:
         softness,
         {},
         {"belly": ("trunk", _belly)},
+        _charts(),
     )
 
 
@@ -61,6 +63,15 @@ def _parts(skeleton: Skeleton) -> list[Part]:
     parts += head(positions[index("head")] + (0, 0.035, -0.010), ends[index("head")])
     parts += tail(tail_joints) + left + [part.mirrored() for part in left]
     return [part.scaled(WITHERS) for part in parts]
+
+
+def _charts() -> dict[str, ChartRule]:
+    """Left and right halves; the outsides and insides of the legs."""
+    left = (1.0, 0.0, 0.0)
+    charts = {name: ChartRule(left, middle=True) for name in ("trunk", "head", "tail")}
+    return charts | {
+        f"{side}_{leg}": ChartRule(left) for side in ("left", "right") for leg in ("fore", "hind")
+    }
 
 
 def _belly(V: FloatArray) -> FloatArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tempose.samples.parts import Part, Point, frame
@@ -105,7 +107,7 @@ def neck(base: Point, poll: Point) -> list[Part]:
     mane = [(s, 0, c, 0.020, 0.020, h, 0.06, 2.0, 0) for s, c, h in zip(places, crest, height)]
     return [
         loft("trunk", base, poll, UP, rows, 0.10, caps=(0.05, 0.05)),
-        loft("trunk", base, poll, UP, mane, 0.012, caps=(0.05, 0.03), detail=0.55),
+        loft("trunk", base, poll, UP, mane, 0.012, caps=(0.05, 0.03), detail=0.55, thickness=0.020),
     ]
 
 
@@ -142,16 +144,11 @@ def head(poll: FloatArray, lips: FloatArray) -> list[Part]:
         swell("head", at(0.950, 0.036, -0.018), (0.040, 0.007, 0.060), -0.004, along=along, up=front),
     ]
     tilt = np.array([0.16, 1.0, 0.18])
+    leaf = ellipsoid(
+        "left_ear", (0.052, 1.245, 0.672), (0.024, 0.015, 0.062), 0.01, along=tilt, up=(0.5, 0, 1), detail=0.5
+    )
     ear = [
-        ellipsoid(
-            "left_ear",
-            (0.052, 1.245, 0.672),
-            (0.024, 0.015, 0.062),
-            0.01,
-            along=tilt,
-            up=(0.5, 0, 1),
-            detail=0.5,
-        ),
+        replace(leaf, thickness=0.017),
         swell("left_ear", (0.060, 1.250, 0.690), (0.016, 0.016, 0.050), -0.008, along=tilt, up=(0.5, 0, 1)),
     ]
     forelock = [cone("head", at(-0.03, 0, 0.045), at(0.25, 0, 0.062), (0.018, 0.010), 0.016, 0.5)]

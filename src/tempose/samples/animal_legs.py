@@ -85,7 +85,9 @@ def hind_leg() -> list[Part]:
 def _column(node: str, table: FloatArray) -> Part:
     y0, y1 = table[0, 0], table[-1, 0]
     rows = [((y - y0) / (y1 - y0), x, z, *radii, 2.1, 0) for y, x, z, *radii in table]
-    return loft(node, (0, y0, 0), (0, y1, 0), FRONT, rows, 0.03, caps=(0.05, 0.02), detail=0.7)
+    return loft(
+        node, (0, y0, 0), (0, y1, 0), FRONT, rows, 0.03, caps=(0.05, 0.02), detail=0.7, thickness=0.020
+    )
 
 
 def _hoof(node: str, fetlock: FloatArray, size: float) -> list[Part]:
@@ -99,6 +101,16 @@ def _hoof(node: str, fetlock: FloatArray, size: float) -> list[Part]:
     ]
     return [
         cone(node, np.add(fetlock, (0, -0.006, 0)), coronet, (0.025, 0.024), 0.012, 0.6),
-        loft(node, (0, 0.066, 0), (0, 0.006, 0), FRONT, wall, 0.007, caps=(0.010, 0.006), detail=0.55),
+        loft(
+            node,
+            (0, 0.066, 0),
+            (0, 0.006, 0),
+            FRONT,
+            wall,
+            0.007,
+            caps=(0.010, 0.006),
+            detail=0.55,
+            thickness=0.024,
+        ),
         swell(node, (x, y - 0.010, z - 0.030), (0.024, 0.024, 0.020), 0.007),
     ]

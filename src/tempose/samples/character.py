@@ -16,10 +16,14 @@ from tempose.samples.human import sculpt_human
 from tempose.samples.remesh import Surface, remesh
 from tempose.samples.sculpture import Sculpture
 from tempose.samples.skin_weights import node_shares, skin_weights
+from tempose.samples.uv import texture_atlas
+from tempose.samples.uv_charts import chart_labels
 from tempose.typing import FloatArray
 
 FEWEST, MOST = 2_000, 1_000_000
 """Numbers of triangles that a character can be asked for."""
+FINE = 8_000
+"""Triangles from which on the human has separate fingers and a hollow skirt."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,31 +121,34 @@ CHARACTERS: Mapping[str, Callable[[int], SkinnedMesh]] = MappingProxyType({"huma
 """The built-in characters by name."""
 
 
-@lru_cache(maxsize=2)
-def _sculpture(name: str) -> Sculpture:
-    return sculpt_human() if name == "human" else sculpt_animal()
+@lru_cache(maxsize=3)
+def _sculpture(name: str, coarse: bool) -> Sculpture:
+    return sculpt_human(coarse) if name == "human" else sculpt_animal()
 
 
 @lru_cache(maxsize=4)
 def _character(name: str, triangles: int) -> Character:
     if not FEWEST <= triangles <= MOST:
         raise ValueError(f"triangles must be {FEWEST} to {MOST}, got {triangles}")
-    sculpture = _sculpture(name)
+    sculpture = _sculpture(name, triangles < FINE)
     field = sculpture.field
     V, F = sculpture.first_mesh
-    detail = np.array([[part.detail] for part in sculpture.parts])
-    V, F = remesh(Surface(field, detail), V.copy(), F, triangles)
+    detail = np.array([part.detail for part in sculpture.parts])
+    longest = np.array([part.longest for part in sculpture.parts])
+    V, F = remesh(Surface(field, detail, longest), V, F, triangles)
     weights = skin_weights(
         field, sculpture.nodes, sculpture.skeleton, V, sculpture.softness, sculpture.special_weights
     )
-    mesh = Mesh(V, F, name=name)
-    return Character(SkinnedMesh(mesh, sculpture.skeleton, weights), _regions(sculpture, V))
+    shares = node_shares(field, V)
+    labels = chart_labels(V, F, shares, sculpture.nodes, sculpture.parts, sculpture.charts)
+    uv, uv_faces = texture_atlas(V, F, labels)
+    mesh = Mesh(V, F, uv=uv, uv_faces=uv_faces, name=name)
+    return Character(SkinnedMesh(mesh, sculpture.skeleton, weights), _regions(sculpture, V, shares))
 
 
-def _regions(sculpture: Sculpture, V: FloatArray) -> dict[str, FloatArray]:
-    shares = node_shares(sculpture.field, V)
+def _regions(sculpture: Sculpture, V: FloatArray, shares: FloatArray) -> dict[str, FloatArray]:
     names = [node.name for node in sculpture.nodes]
     return {
-        region: shares[:, names.index(node)] * softness(V)
+        region: np.clip(shares[:, names.index(node)] * softness(V), 0.0, 1.0)
         for region, (node, softness) in sculpture.regions.items()
     }

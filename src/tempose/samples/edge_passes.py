@@ -14,8 +14,6 @@ from tempose.typing import FloatArray, IntArray
 
 LONG, SHORT = 4.0 / 3.0, 4.0 / 5.0
 """Edges outside these multiples of the wanted length come closer to it when split or collapsed."""
-FLATNESS = 0.3
-"""Least cosine between the normals of a triangle before and after an operation."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -78,7 +76,7 @@ def split_long(V: FloatArray, want: FloatArray, mesh: HalfEdges, n: int) -> int:
 
 
 @njit(cache=True, error_model="numpy")
-def collapse_short(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> None:
+def collapse_short(V: FloatArray, want: FloatArray, mesh: HalfEdges, flatness: float) -> None:
     """Collapse edges that are shorter than wanted, in place, unless that would fold or pinch the surface.
 
     Parameters
@@ -89,6 +87,8 @@ def collapse_short(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> None:
         Wanted edge length at the vertices, metres.
     mesh : HalfEdges
         Connectivity.
+    flatness : float
+        Least cosine between the normals of a triangle before and after.
     """
     stamp = np.full(len(V), -1, dtype=np.int64)
     middle = np.zeros(3)
@@ -102,8 +102,8 @@ def collapse_short(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> None:
         middle[:] = 0.5 * (V[a] + V[b])
         if (
             _linked(mesh, h, stamp)
-            and _stays_flat(V, want, mesh, h, b, middle)
-            and _stays_flat(V, want, mesh, mesh.twin[h], a, middle)
+            and _stays_flat(V, want, mesh, h, b, middle, flatness)
+            and _stays_flat(V, want, mesh, mesh.twin[h], a, middle, flatness)
         ):
             V[b] = middle
             want[b] = 0.5 * (want[a] + want[b])
@@ -142,7 +142,9 @@ def _valence(mesh: HalfEdges, h: int) -> int:
 
 
 @njit(cache=True, error_model="numpy")
-def _stays_flat(V: FloatArray, want: FloatArray, mesh: HalfEdges, h: Any, other: Any, to: FloatArray) -> bool:
+def _stays_flat(
+    V: FloatArray, want: FloatArray, mesh: HalfEdges, h: Any, other: Any, to: FloatArray, flatness: float
+) -> bool:
     """Whether the start of `h` may move: no triangle around it turns over, no edge gets too long."""
     a = mesh.start[h]
     k = h
@@ -155,7 +157,7 @@ def _stays_flat(V: FloatArray, want: FloatArray, mesh: HalfEdges, h: Any, other:
             normal(V, a, b, c, new)
             far = edge_length(V, a, b) > LONG * 0.5 * (want[a] + want[b])
             V[a] = here
-            if far or np.dot(old, new) < FLATNESS:
+            if far or np.dot(old, new) < flatness:
                 return False
         k = mesh.twin[before(k)]
         if k == h:

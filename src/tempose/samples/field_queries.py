@@ -72,7 +72,8 @@ def project(field: Field, V: FloatArray, steps: int, limit: float) -> FloatArray
             length = np.sqrt(gx * gx + gy * gy + gz * gz)
             if length < 1e-6:
                 continue
-            step = min(max(f0 / length, -limit), limit) / length
+            # where two sheets meet the gradient vanishes, and says nothing about distance
+            step = min(max(f0 / max(length, 0.6), -limit), limit) / length
             V[i, 0], V[i, 1], V[i, 2] = x - step * gx, y - step * gy, z - step * gz
             normals[i, 0], normals[i, 1], normals[i, 2] = gx / length, gy / length, gz / length
     return normals
@@ -97,7 +98,7 @@ def mixture(field: Field, V: FloatArray, widen: float, amounts: FloatArray) -> F
     -------
     (n, q) ndarray
         Averages of the rows of `amounts`, weighted by the derivative of the field with respect to each part;
-        a brush stroke or a carved part has no weight.
+        a brush stroke has no weight.
     """
     P, N = len(field.kind), len(field.parent)
     out = np.zeros((len(V), amounts.shape[1]))
@@ -132,17 +133,19 @@ def _add_part(
     """Blend the last part of a list into its node, and share its weight with the parts before it."""
     j = near[-1]
     weight[j] = 0.0
-    if field.carve[j] or field.kind[j] == SWELL:
+    if field.kind[j] == SWELL:
         return
-    d = solid(field.kind[j], field.data[j], field.tables[j], row, p[0], p[1], p[2])
+    # taking away is adding to the outside
+    sign = -1.0 if field.carve[j] else 1.0
+    d = sign * solid(field.kind[j], field.data[j], field.tables[j], row, p[0], p[1], p[2])
     n, k = field.node[j], field.blend[j] * widen
-    h = min(max(0.5 + 0.5 * (core[n] - d) / k, 0.0), 1.0)
+    h = min(max(0.5 + 0.5 * sign * (core[n] - d) / k, 0.0), 1.0)
     if h > 0.0:
         for i in near[:-1]:
             if field.node[i] == n:
                 weight[i] *= 1.0 - h
     weight[j] = h
-    core[n] = min(core[n], d) - max(k - abs(core[n] - d), 0.0) ** 2 / (4.0 * k)
+    core[n] = sign * min(sign * core[n], sign * d) - sign * max(k - abs(core[n] - d), 0.0) ** 2 / (4.0 * k)
 
 
 @njit(cache=True, error_model="numpy")

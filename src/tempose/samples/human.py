@@ -11,6 +11,7 @@ from tempose.samples.human_extremities import foot, hand, head
 from tempose.samples.parts import Node, Part, ease, sided
 from tempose.samples.sculpture import Sculpture
 from tempose.samples.skeletons import human_skeleton
+from tempose.samples.uv_charts import ChartRule
 from tempose.typing import FloatArray
 
 FINGERS = ("thumb", "index", "middle", "ring", "little")
@@ -24,8 +25,13 @@ _SOFTNESS = {
 }  # fmt: skip
 
 
-def sculpt_human() -> Sculpture:
+def sculpt_human(coarse: bool = False) -> Sculpture:
     """Sculpt the human.
+
+    Parameters
+    ----------
+    coarse : bool, default False
+        For few triangles: mittens, one solid for the toes, a skirt that is nearly filled.
 
     Returns
     -------
@@ -35,26 +41,41 @@ def sculpt_human() -> Sculpture:
     skeleton = human_skeleton()
     return Sculpture(
         "human",
-        tuple(_nodes()),
-        tuple(_parts(skeleton)),
+        tuple(_nodes(coarse)),
+        tuple(_parts(skeleton, coarse)),
         skeleton,
         sided(_SOFTNESS),
         {"skirt": _skirt_weights},
         {"belly": ("trunk", _belly), "skirt": ("skirt", _skirt)},
+        _charts(),
     )
 
 
-def _parts(skeleton: Skeleton) -> list[Part]:
+def _parts(skeleton: Skeleton, coarse: bool) -> list[Part]:
     positions = rest_transforms(skeleton)[1]
     assert skeleton.tips is not None
     ends = positions + np.nan_to_num(skeleton.tips)
     p = {name: positions[j] for j, name in enumerate(skeleton.names)}
     end = {name: ends[j] for j, name in enumerate(skeleton.names)}
     left = arm(p["left_upper_arm"], p["left_forearm"], p["left_hand"])
-    left += hand(p["left_hand"], end["left_hand"])
+    left += hand(p["left_hand"], end["left_hand"], coarse)
     left += leg(p["left_thigh"], p["left_shin"], p["left_foot"])
-    left += foot(p["left_foot"], p["left_toes"])
-    return torso() + head(end["head"]) + skirt() + left + [part.mirrored() for part in left]
+    left += foot(p["left_foot"], p["left_toes"], coarse)
+    return torso() + head(end["head"]) + skirt(coarse) + left + [part.mirrored() for part in left]
+
+
+def _charts() -> dict[str, ChartRule]:
+    """Front and back of everything; the backs of the hands, palms, soles; the skirt inside and outside."""
+    front = (0.0, 0.0, 1.0)
+    charts = {"torso": ChartRule(front), "head": ChartRule(front), "skirt": ChartRule(front, hollow=True)}
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        charts |= {
+            f"{side}_arm": ChartRule(front),
+            f"{side}_hand": ChartRule((sign, 1.0, 0.0)),
+            f"{side}_leg": ChartRule(front),
+            f"{side}_foot": ChartRule((0.0, 1.0, 0.0)),
+        }
+    return charts
 
 
 def _skirt_weights(V: FloatArray) -> FloatArray:
@@ -80,7 +101,7 @@ def _belly(V: FloatArray) -> FloatArray:
     return np.maximum(1.0 - away, 0.0) ** 2 * ease(z / 0.06)
 
 
-def _nodes() -> list[Node]:
+def _nodes(coarse: bool) -> list[Node]:
     spine = ("hips", "spine", "chest", "neck", "head")
     nodes = [
         Node("trunk", "", 0.0, spine, "torso", web=0.010),
@@ -99,5 +120,6 @@ def _nodes() -> list[Node]:
         nodes += [
             Node(f"{side}_{name}", f"{side}_hand", 0.010, ("chest", *arm_chain), f"{side}_hand")
             for name in FINGERS
+            if name == "thumb" or not coarse
         ]
     return nodes

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -132,7 +134,7 @@ def arm(shoulder: FloatArray, elbow: FloatArray, wrist: FloatArray) -> list[Part
     along = (wrist - shoulder) / np.linalg.norm(wrist - shoulder)
     outwards = np.cross(FRONT, along)
     return [
-        loft("left_arm", shoulder, wrist, FRONT, rows, 0.02, caps=(0.045, 0.02)),
+        loft("left_arm", shoulder, wrist, FRONT, rows, 0.02, caps=(0.045, 0.02), thickness=0.024),
         swell(
             "left_arm", shoulder + 0.065 * along + 0.030 * outwards, (0.06, 0.07, 0.085), 0.007, along=along
         ),
@@ -162,7 +164,7 @@ def leg(hip: FloatArray, knee: FloatArray, ankle: FloatArray) -> list[Part]:
     """
     rows = _limb_rows(_LEG, hip, knee, ankle, FRONT, 2.1)
     return [
-        loft("left_leg", hip, ankle, FRONT, rows, 0.03, caps=(0.06, 0.03)),
+        loft("left_leg", hip, ankle, FRONT, rows, 0.03, caps=(0.06, 0.03), thickness=0.030),
         swell("left_leg", np.add(knee, (-0.003, 0.012, 0.050)), (0.036, 0.046, 0.040), 0.006),
         swell("left_leg", np.add(knee, (-0.003, -0.060, 0.042)), (0.024, 0.040, 0.030), 0.002),
         swell("left_leg", np.add(knee, (0.000, 0.000, -0.045)), (0.030, 0.045, 0.030), -0.005),
@@ -173,8 +175,13 @@ def leg(hip: FloatArray, knee: FloatArray, ankle: FloatArray) -> list[Part]:
     ]
 
 
-def skirt() -> list[Part]:
+def skirt(filled: bool) -> list[Part]:
     """Knee-length skirt with a belt: thick cloth around a hollow from which the legs come.
+
+    Parameters
+    ----------
+    filled : bool
+        Leave the hollow away.
 
     Returns
     -------
@@ -182,22 +189,24 @@ def skirt() -> list[Part]:
         Parts of the node ``skirt``.
     """
     belt = [(s, 0, -0.012, 0.151, 0.151, 0.107, 0.094, 2.2, 0.0) for s in (0.0, 0.5, 1.0)]
-    return [
+    cloth = [
         _bell("skirt", 1.075, 0.560, 0.0, caps=(0.010, 0.012)),
         loft("skirt", (0, 1.085, 0), (0, 1.050, 0), FRONT, belt, 0.006, caps=(0.006, 0.006)),
-        _bell("skirt", 0.700, 0.500, 0.018, caps=(0.020, 0.020), carve=True),
     ]
+    if filled:
+        return cloth
+    hem = replace(_bell("skirt", 0.582, 0.560, -0.001, caps=(0.004, 0.012)), blend=0.004, thickness=0.012)
+    hollow = _bell("skirt", 0.860, 0.500, 0.018, caps=(0.020, 0.020))
+    return [*cloth, hem, replace(hollow, carve=True, detail=2.0)]
 
 
-def _bell(
-    node: str, top: float, bottom: float, wall: float, caps: tuple[float, float], carve: bool = False
-) -> Part:
+def _bell(node: str, top: float, bottom: float, wall: float, caps: tuple[float, float]) -> Part:
     columns = CubicSpline(-_SKIRT[:, 0], _SKIRT[:, 1:])
     rows: list[tuple[float, ...]] = []
     for s in np.linspace(0.0, 1.0, 7):
         z, a, f, b, fold = columns(-(top + s * (bottom - top)))
         rows.append((s, 0, z, a - wall, a - wall, f - wall, b - wall, 2.1, fold))
-    return loft(node, (0, top, 0), (0, bottom, 0), FRONT, rows, 0.01, caps=caps, folds=(16, 0.4), carve=carve)
+    return loft(node, (0, top, 0), (0, bottom, 0), FRONT, rows, 0.01, caps=caps, folds=(16, 0.4))
 
 
 def _limb_rows(

@@ -101,13 +101,15 @@ def head(top: FloatArray) -> list[Part]:
     return [skull, face, *left, *(part.mirrored() for part in left), *nose, *middle]
 
 
-def hand(wrist: FloatArray, tip: FloatArray) -> list[Part]:
+def hand(wrist: FloatArray, tip: FloatArray, mitten: bool) -> list[Part]:
     """Left hand: palm in ``left_hand``, each finger in a node of its own.
 
     Parameters
     ----------
     wrist, tip : (3,) float
         Joint, and end of the middle finger, metres.
+    mitten : bool
+        One solid for four fingers.
 
     Returns
     -------
@@ -142,6 +144,18 @@ def hand(wrist: FloatArray, tip: FloatArray) -> list[Part]:
         ],
         [0.0125, 0.0112, 0.0100, 0.0082],
     )
+    if mitten:
+        fingers = [
+            (0.0, 0, 0.000, 0.012, 0.013, 0.038, 0.036, 2.5, 0),
+            (0.5, 0, -0.006, 0.010, 0.011, 0.035, 0.035, 2.5, 0),
+            (1.0, 0, -0.020, 0.008, 0.008, 0.024, 0.030, 2.3, 0),
+        ]
+        rows = [(s, c, b, *r) for s, b, c, *r in fingers]
+        a, b = at(0.075, 0, 0), at(0.165, 0, 0)
+        return [
+            *parts,
+            loft("left_hand", a, b, thumbwards, rows, 0.01, caps=(0.01, 0.012), detail=0.5, thickness=0.014),
+        ]
     for name, (t, v, length, splay, r0, r1) in _FINGERS.items():
         points, angle = [at(t, v, 0.0)], 0.10
         here = np.array([t, v, 0.0])
@@ -154,13 +168,15 @@ def hand(wrist: FloatArray, tip: FloatArray) -> list[Part]:
     return parts
 
 
-def foot(ankle: FloatArray, toes: FloatArray) -> list[Part]:
-    """Left foot with its sole on the ground and five toes.
+def foot(ankle: FloatArray, toes: FloatArray, shoe: bool) -> list[Part]:
+    """Left foot with its sole on the ground.
 
     Parameters
     ----------
     ankle, toes : (3,) float
         Joints, metres; the ground is at height 0.
+    shoe : bool
+        One solid for all toes.
 
     Returns
     -------
@@ -186,6 +202,11 @@ def foot(ankle: FloatArray, toes: FloatArray) -> list[Part]:
     parts = [
         loft("left_foot", at(-0.028, 0, 0), at(0.145, 0, 0), up, rows, 0.02, caps=(0.027, 0.035), detail=0.6)
     ]
+    if shoe:
+        a, b = at(0.14, -0.016, 0.018), at(0.186, -0.016, 0.015)
+        parts.append(cone("left_foot", a, b, (0.018, 0.015), 0.012, 0.6))
+        a, b = at(0.13, 0.022, 0.016), at(0.168, 0.020, 0.014)
+        return [*parts, cone("left_foot", a, b, (0.018, 0.014), 0.012, 0.6)]
     for lateral, start, end, r in _TOES:
         a, b = at(start - 0.012, lateral * 0.92, r + 0.004), at(end, lateral, r * 0.92)
         parts.append(cone("left_foot", a, b, (r * 1.05, r * 0.92), 0.006, 0.42))
@@ -194,6 +215,6 @@ def foot(ankle: FloatArray, toes: FloatArray) -> list[Part]:
 
 def _chain(node: str, points: list[FloatArray], radii: list[float]) -> list[Part]:
     return [
-        cone(node, points[i], points[i + 1], (radii[i], radii[i + 1]), 0.002, 0.36)
+        cone(node, points[i], points[i + 1], (radii[i], radii[i + 1]), 0.002, 0.28)
         for i in range(len(points) - 1)
     ]

@@ -54,6 +54,8 @@ class Part:
     """Take the solid away instead of adding it."""
     table: FloatArray | None = None
     """(TABLE_ROWS, 8) cross-sections of a loft."""
+    thickness: float = np.inf
+    """Half of what must not vanish when triangles are few, metres; known for cones."""
 
     @property
     def bounds(self) -> FloatArray:
@@ -72,6 +74,12 @@ class Part:
         centre = q[:3] + self.table[:, :2] @ axes[:2] + t[:, None] * axes[2]
         reach = self.table[:, 2:6].max() * (1.0 + self.table[:, 7].max())
         return np.array([centre.min(axis=0) - reach, centre.max(axis=0) + reach])
+
+    @property
+    def longest(self) -> float:
+        """Longest edges that still show the solid, metres: a prism on an equilateral triangle inside it."""
+        thinnest = float(self.data[6:8].min()) if self.kind == ROUND_CONE else np.inf
+        return float(np.sqrt(3.0)) * min(self.thickness, thinnest)
 
     def mirrored(self) -> Part:
         """Return the same part on the other side of the body.
@@ -107,7 +115,8 @@ class Part:
             lengths[15:] = False
             table = table * np.where(np.arange(8) < 6, factor, 1.0)
         data[lengths] *= factor
-        return replace(self, data=data, table=table, blend=self.blend * factor)
+        sizes = {"blend": self.blend * factor, "thickness": self.thickness * factor}
+        return replace(self, data=data, table=table, **sizes)
 
 
 def frame(along: Point, up: Point) -> FloatArray:

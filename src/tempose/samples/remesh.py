@@ -25,7 +25,7 @@ from tempose.samples.field_queries import mixture, project
 from tempose.samples.half_edges import HalfEdges, build, compact, faces
 from tempose.typing import FloatArray, IntArray
 
-SLOPE = 0.3
+SLOPE = 0.4
 """Largest slope of the wanted edge length along the surface."""
 TURN = 0.5
 """How far the normal may turn along an edge, radians, where the budget allows it."""
@@ -39,7 +39,9 @@ class Surface(NamedTuple):
     field: Field
     """The surface."""
     detail: FloatArray
-    """(P, 1) relative edge length for each part."""
+    """(P,) relative edge length for each part."""
+    longest: FloatArray
+    """(P,) longest edges that still show the part, metres."""
 
 
 def remesh(surface: Surface, V: FloatArray, F: IntArray, triangles: int) -> tuple[FloatArray, IntArray]:
@@ -63,8 +65,11 @@ def remesh(surface: Surface, V: FloatArray, F: IntArray, triangles: int) -> tupl
     longest = float(np.median(np.linalg.norm(V[F[:, 0]] - V[F[:, 1]], axis=1)))
     if len(F) > 3 * triangles:
         longest *= 1.9
-        V, _, mesh = _changed(V, np.full(len(V), longest), mesh)
+        V, _, mesh = _changed(V, np.full(len(V), longest), mesh, 0.9)
     normals = project(surface.field, V, 1, longest)
+    # what is thin may have half of all triangles
+    spent = _covering(_graded(V, mesh, _parts_want(surface, V)[:, 1]), V, mesh) / (0.5 * triangles)
+    surface = surface._replace(longest=surface.longest * max(1.0, np.sqrt(spent)))
     scale = _scale(surface, V, normals, mesh, triangles)
     while longest < 0.8 * scale:
         longest *= 1.9
@@ -83,29 +88,35 @@ def remesh(surface: Surface, V: FloatArray, F: IntArray, triangles: int) -> tupl
 
 def _scale(surface: Surface, V: FloatArray, normals: FloatArray, mesh: HalfEdges, triangles: int) -> float:
     """Edge length at detail 1 at which equilateral triangles of the wanted sizes cover the surface."""
+    scale = float(np.sqrt(_covering(np.ones(len(V)), V, mesh) / triangles))
+    parts = _parts_want(surface, V)
+    for _ in range(8):
+        want = _graded(V, mesh, _bent(V, normals, mesh, _shorter(parts, scale), FINEST * scale))
+        scale *= float(np.sqrt(_covering(want, V, mesh) / triangles))
+    return scale
+
+
+def _covering(want: FloatArray, V: FloatArray, mesh: HalfEdges) -> float:
+    """How many equilateral triangles of the wanted sizes cover the surface."""
     F = mesh.start.reshape(-1, 3)
     area = 0.5 * np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1)
-    scale = float(np.sqrt(area.sum() / triangles / np.sqrt(0.1875)))
-    detail = mixture(surface.field, V, 1.0, surface.detail)[:, 0]
-    for _ in range(4):
-        want = _graded(V, mesh, _bent(V, normals, mesh, scale * detail, FINEST * scale))
-        covered = (area / (np.sqrt(0.1875) * want[F].mean(axis=1) ** 2)).sum()
-        scale *= float(np.sqrt(covered / triangles))
-    return scale
+    return float((area / (np.sqrt(0.1875) * want[F].mean(axis=1) ** 2)).sum())
 
 
 def _round(
     surface: Surface, V: FloatArray, normals: FloatArray, mesh: HalfEdges, scale: float, longest: float
 ) -> tuple[FloatArray, FloatArray, HalfEdges]:
     """All operations once, towards edges of ``min(scale * detail, longest)``."""
-    V, want, mesh = _changed(V, _wanted(surface, V, normals, mesh, scale, longest), mesh)
+    V, want, mesh = _changed(V, _wanted(surface, V, normals, mesh, scale, longest), mesh, 0.3)
     return V, _relax(surface, V, mesh, want), mesh
 
 
-def _changed(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> tuple[FloatArray, FloatArray, HalfEdges]:
+def _changed(
+    V: FloatArray, want: FloatArray, mesh: HalfEdges, flatness: float
+) -> tuple[FloatArray, FloatArray, HalfEdges]:
     """Split, collapse and flip edges."""
     V, want, mesh = _split(V, want, mesh)
-    collapse_short(V, want, mesh)
+    collapse_short(V, want, mesh, flatness)
     flip_edges(V, mesh, False)
     return compact(V, want, mesh)
 
@@ -114,8 +125,16 @@ def _wanted(
     surface: Surface, V: FloatArray, normals: FloatArray, mesh: HalfEdges, scale: float, longest: float
 ) -> FloatArray:
     """Edge length at each vertex: by detail, shorter where the surface bends, changing slowly."""
-    want = scale * mixture(surface.field, V, 1.0, surface.detail)[:, 0]
+    want = _shorter(_parts_want(surface, V), scale)
     return _graded(V, mesh, np.minimum(_bent(V, normals, mesh, want, FINEST * scale), longest))
+
+
+def _parts_want(surface: Surface, V: FloatArray) -> FloatArray:
+    return mixture(surface.field, V, 1.0, np.column_stack([surface.detail, surface.longest]))
+
+
+def _shorter(parts: FloatArray, scale: float) -> FloatArray:
+    return np.minimum(scale * parts[:, 0], parts[:, 1])
 
 
 def _split(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> tuple[FloatArray, FloatArray, HalfEdges]:
@@ -134,7 +153,9 @@ def _split(V: FloatArray, want: FloatArray, mesh: HalfEdges) -> tuple[FloatArray
 
 def _relax(surface: Surface, V: FloatArray, mesh: HalfEdges, want: FloatArray) -> FloatArray:
     V += _shifts(V, want, mesh)
-    return project(surface.field, V, 1, 0.3 * float(np.median(want)))
+    length = float(np.median(want))
+    # few triangles leave the surface further behind
+    return project(surface.field, V, 1 if length < 0.015 else 2, 0.5 * length)
 
 
 @njit(cache=True, error_model="numpy")

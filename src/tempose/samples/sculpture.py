@@ -12,6 +12,7 @@ from tempose.clips import Skeleton
 from tempose.samples.field import Field, pack
 from tempose.samples.parts import Node, Part
 from tempose.samples.surface_nets import surface_nets
+from tempose.samples.uv_charts import ChartRule
 from tempose.typing import FloatArray, IntArray
 
 STEP = 0.005
@@ -40,6 +41,9 @@ class Sculpture:
         default_factory=dict[str, tuple[str, Callable[[FloatArray], FloatArray]]]
     )
     """Soft regions: the node that is soft, and (n, 3) points to (n,) softness, 0 to 1."""
+
+    charts: Mapping[str, ChartRule] = field(default_factory=dict[str, ChartRule])
+    """How to cut the surface for a texture, by name of chart."""
 
     @cached_property
     def field(self) -> Field:

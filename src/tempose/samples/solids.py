@@ -123,6 +123,7 @@ def loft(
     folds: tuple[float, float] = (0.0, 0.0),
     detail: float = 1.0,
     carve: bool = False,
+    thickness: float = np.inf,
 ) -> Part:
     """Sweep of superellipses along a straight line.
 
@@ -146,6 +147,8 @@ def loft(
         Relative edge length.
     carve : bool, default False
         Take away instead of adding.
+    thickness : float, optional
+        Half of what must not vanish when triangles are few, metres.
 
     Returns
     -------
@@ -158,4 +161,4 @@ def loft(
     table = CubicSpline(rows[:, 0], rows[:, 1:])(np.linspace(0.0, 1.0, TABLE_ROWS))
     length = float(np.linalg.norm(end - start))
     data = np.array([*start, *axes.ravel(), length, *caps, *folds], dtype=np.float64)
-    return Part(node, LOFT, data, blend, detail, carve, np.asarray(table, dtype=np.float64))
+    return Part(node, LOFT, data, blend, detail, carve, np.asarray(table, dtype=np.float64), thickness)
