@@ -17,6 +17,15 @@ import tempose
 from tempose.cli import entry
 from tempose.cli.app import command
 
+
+@pytest.fixture(autouse=True)
+def interrupts_arrive():
+    """Listen for Ctrl-C even where the tests run in the background of a shell, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 COMMANDS = sorted(getattr(command, "commands", {}))
 
 
