@@ -183,3 +183,15 @@ def test_a_target_in_the_sources_numbering_turns_with_the_source(rng) -> None:
     turned = transfer_motion(MeshClip(frames, mesh, 30.0), mesh, pairs, contacts=False).clip.vertices
     expected = np.stack([R.apply(V) for V in centred(plain.astype(float))])
     assert_allclose(centred(turned.astype(float)), expected, rtol=0, atol=1e-5 * mesh.diagonal)
+
+
+def test_a_mesh_rolled_up_keeps_its_signs_along_the_surface(rng) -> None:
+    """Ends that differ by 300 degrees agree with their neighbours, whatever the order of the pairs."""
+    mesh = tube(41, 12, 3.0, 0.1)
+    rolled = bent(mesh, 2, 300)
+    clip = MeshClip(rolled.vertices[1:], mesh, 30.0)
+    marks = rng.permutation(40 * 12)[:150]
+    result = transfer_motion(clip, mesh, Pairs("vertices", marks, marks), contacts=False)
+    assert result.report["quaternion_norm_min"] > 0.95
+    error = np.linalg.norm(centred(result.clip.vertices) - centred(clip.vertices), axis=2)
+    assert error.max() < 0.03 * mesh.diagonal
