@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -9,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
-from tempose.transfer.from_mesh import prepare_mesh
-from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
+from tempose.transfer.frames import make_frames, release
+from tempose.transfer.from_skeleton import Prepared
+from tempose.transfer.matching import Matched, match, prepare
 from tempose.transfer.measures import (
     SHORT_QUATERNION,
     direction_measures,
@@ -21,9 +23,11 @@ from tempose.transfer.measures import (
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.placement import Placement, place_clip
 from tempose.transfer.result import TransferResult
-from tempose.transfer.skin_pairs import pairs_from_skin
 from tempose.transfer.template import template_clip
 from tempose.typing import FloatArray, Progress, silent
+
+BLOCK = 16
+"""Frames handled together after they are solved."""
 
 
 @dataclass
@@ -47,6 +51,7 @@ def transfer_motion(
     volume: float = 0.0,
     contacts: bool = True,
     measure: bool = True,
+    scratch: str | os.PathLike[str] | None = None,
     progress: Progress = silent,
 ) -> TransferResult:
     """Move a still mesh as a skeleton clip or another mesh moves.
@@ -71,6 +76,9 @@ def transfer_motion(
         Whether the root is moved so that feet in contact stand still.
     measure : bool, default True
         Whether the report holds measures; they cost about as much as the frames.
+    scratch : path-like, optional
+        Folder for the frames, when they are too many for memory: the clip's vertices are then a memory map
+        of a new file in it, which is yours to delete.
     progress : Progress
         Called with frames done.
 
@@ -85,104 +93,42 @@ def transfer_motion(
         If the source is empty, pairs do not fit, or the target cannot be moved; the message says which.
     """
     clock = _Clock()
-    mesh = target.mesh if isinstance(target, SkinnedMesh) else target
-    _check_source(source, mesh)
-    pairs = _checked_pairs(source, target, pairs, mapping)
+    matched = match(source, target, pairs, mapping)
+    mesh = matched.mesh
     clock.lap("pairs")
-    job = _prepare(source, mesh, pairs, mapping, source_rest, rest_frame, volume)
+    job = prepare(
+        source,
+        mesh,
+        matched.pairs,
+        mapping=mapping,
+        rest=source_rest,
+        rest_frame=rest_frame,
+        volume=volume,
+    )
     clock.lap("set-up")
-    V = _solve(job, progress)
+    V = _solve(job, progress, scratch)
     clock.lap("frames")
     placement = _place(job, V, source.fps, contacts)
     clip = MeshClip(V, mesh, source.fps, replace(mesh.source, fps=source.fps))
+    release(V)
     clock.lap("placement")
-    report: dict[str, Any] = {"warnings": list(job.warnings)}
+    report: dict[str, Any] = {"warnings": [*matched.warnings, *job.warnings]}
     if measure:
         progress(len(V), len(V), "measures")
-        report |= _measures(job, V, placement, source.fps)
+        _add_measures(report, job, V, source.fps)
         clock.lap("measures")
-    report |= _facts(job, pairs, placement)
+    report |= _facts(job, matched, placement)
     report["seconds"] = clock.seconds | {"total": sum(clock.seconds.values())}
-    return TransferResult(clip, pairs, report, _picture(source, job))
+    return TransferResult(clip, matched.pairs, report, _picture(source, job))
 
 
-def _check_source(source: SkeletonClip | MeshClip, mesh: Mesh) -> None:
-    if source.n_frames == 0:
-        raise ValueError("source must have at least one frame, got none")
-    if len(mesh.faces) < 2:
-        raise ValueError(f"target must be a surface of at least 2 triangles, got {len(mesh.faces)}")
-    if np.linalg.matrix_rank(mesh.vertices - mesh.vertices.mean(axis=0), tol=1e-6 * mesh.diagonal) < 3:
-        raise ValueError("target must have volume, got a mesh whose vertices lie in one plane")
-
-
-def _checked_pairs(
-    source: SkeletonClip | MeshClip,
-    target: Mesh | SkinnedMesh,
-    pairs: Pairs | None,
-    mapping: dict[str, str] | None,
-) -> Pairs:
-    mesh = target.mesh if isinstance(target, SkinnedMesh) else target
-    if isinstance(source, MeshClip):
-        if pairs is None:
-            raise ValueError("a mesh that moves another needs pairs of faces or vertices; give a pairs file")
-        if pairs.kind == "joints":
-            raise ValueError("pairs of kind 'joints' need a skeleton as source, got a mesh clip")
-        sizes = (len(source.faces), len(mesh.faces))
-        if pairs.kind == "vertices":
-            sizes = (source.vertices.shape[1], len(mesh.vertices))
-        pairs.check(*sizes)
-        return pairs
-    if pairs is None:
-        if not isinstance(target, SkinnedMesh):
-            raise ValueError(
-                "the target has no skin weights to take pairs from; give a pairs file "
-                "(JSON) or the target's weights (.mhw)"
-            )
-        pairs = pairs_from_skin(source.skeleton, target, mapping)
-    if pairs.kind != "joints":
-        raise ValueError(f"pairs of kind {pairs.kind!r} need a mesh clip as source, got a skeleton")
-    pairs.check(0, len(mesh.faces), source.skeleton.names)
-    return pairs
-
-
-def _prepare(
-    source: SkeletonClip | MeshClip,
-    mesh: Mesh,
-    pairs: Pairs,
-    mapping: dict[str, str] | None,
-    rest: SkeletonClip | Mesh | None,
-    rest_frame: int | None,
-    volume: float,
-) -> Prepared:
-    if isinstance(source, SkeletonClip):
-        if isinstance(rest, Mesh):
-            raise ValueError("source_rest must be a motion clip of the same skeleton, got a mesh")
-        return prepare_skeleton(
-            source, mesh, pairs, mapping=mapping, rest_clip=rest, rest_frame=rest_frame, volume=volume
-        )
-    V_rest: FloatArray | None = None
-    if isinstance(rest, SkeletonClip):
-        raise ValueError("source_rest must be a mesh like the source, got a skeleton clip")
-    if rest is not None:
-        if rest.vertices.shape[0] != source.vertices.shape[1]:
-            raise ValueError(
-                f"source_rest must have the {source.vertices.shape[1]} vertices of the source, "
-                f"got {rest.vertices.shape[0]}"
-            )
-        V_rest = rest.vertices
-    elif rest_frame is not None:
-        if not 0 <= rest_frame < source.n_frames:
-            raise ValueError(f"source_rest must be a frame from 0 to {source.n_frames - 1}, got {rest_frame}")
-        V_rest = np.asarray(source.vertices[rest_frame], dtype=np.float64)
-    return prepare_mesh(source, mesh, pairs, rest=V_rest, volume=volume)
-
-
-def _solve(job: Prepared, progress: Progress) -> FloatArray:
+def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | None) -> FloatArray:
     T = len(job.rotations)
-    V = np.zeros((T, len(job.solver.mesh.vertices), 3), dtype=np.float32)
+    V = make_frames(T, len(job.solver.mesh.vertices), scratch)
 
     def receive(block: slice, frames: FloatArray) -> None:
         V[block] = frames
+        release(V)
         progress(min(block.stop, T), T, "frames")
 
     job.solver.pose_blocks(job.rotations, receive)
@@ -196,11 +142,17 @@ def _place(job: Prepared, V: FloatArray, fps: float, contacts: bool) -> Placemen
     placement = place_clip(
         job.anchor_path, soles, job.feet.contact, ground, mesh.height, job.leg_ratio, fps, contacts
     )
-    V += placement.shift[:, None].astype(np.float32)
+    for block in _blocks(len(V)):
+        V[block] += placement.shift[block, None].astype(np.float32)
+        release(V)
     return placement
 
 
-def _measures(job: Prepared, V: FloatArray, placement: Placement, fps: float) -> dict[str, Any]:
+def _blocks(n_frames: int) -> list[slice]:
+    return [slice(t, t + BLOCK) for t in range(0, n_frames, BLOCK)]
+
+
+def _add_measures(report: dict[str, Any], job: Prepared, V: FloatArray, fps: float) -> None:
     mesh = job.solver.mesh
     roles = job.bones.roles if job.bones else ()
     soft = soft_faces(mesh.faces, job.owner, roles) if any(roles) else None
@@ -210,16 +162,16 @@ def _measures(job: Prepared, V: FloatArray, placement: Placement, fps: float) ->
     ground = float(mesh.vertices[:, 1].min())
     measures |= foot_measures(job.feet, V, mesh.height, job.source_height, ground, fps)
     if measures["quaternion_norm_min"] < SHORT_QUATERNION:
-        measures["warnings"] = [
-            *job.warnings,
+        report["warnings"].append(
             "neighbouring marks turn against each other (shortest quaternion "
-            f"{measures['quaternion_norm_min']:.2f}): look for a torn or collapsed place",
-        ]
-    return measures
+            f"{measures['quaternion_norm_min']:.2f}): look for a torn or collapsed place"
+        )
+    report |= measures
 
 
-def _facts(job: Prepared, pairs: Pairs, placement: Placement) -> dict[str, Any]:
-    return {
+def _facts(job: Prepared, matched: Matched, placement: Placement) -> dict[str, Any]:
+    pairs = matched.pairs
+    return matched.facts | {
         "pairs": {"count": len(pairs), "kind": pairs.kind, "origin": pairs.origin},
         "reference": job.chosen,
         "first_frame": job.first_frame,
