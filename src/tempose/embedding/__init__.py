@@ -1,0 +1,7 @@
+"""A human skeleton placed inside one mesh, and heat-equilibrium weights."""
+
+from tempose.embedding.embed import embed_skeleton, embed_skin
+from tempose.embedding.embedding import Embedding
+from tempose.embedding.heat import heat_weights
+
+__all__ = ["Embedding", "embed_skeleton", "embed_skin", "heat_weights"]
