@@ -10,6 +10,7 @@ from tempose.cli import transfer_options as given
 from tempose.cli.console import note, progress_bar, show_json, show_table, writing
 from tempose.cli.options import Group, Json, check_out
 from tempose.cli.report import make_report, write_report
+from tempose.cli.transfer_frames import releasing, room_for_frames
 from tempose.cli.transfer_inputs import load_mapping, load_motion, load_pairs, load_rest, load_target
 
 
@@ -48,15 +49,19 @@ def transfer(  # numpydoc ignore=PR01
     settings |= load_rest(source_rest, motion)
     loaded = time.perf_counter()
     trimmed = _trimmed(motion, start, stop, step)
-    with progress_bar() as progress:
-        result = tempose.transfer.transfer_motion(trimmed, goal, listed, progress=progress, **settings)
-    moved = time.perf_counter()
-    with progress_bar() as progress, writing(out):
-        tempose.save(out, result.clip, progress=progress)
+    with room_for_frames(trimmed.n_frames, _n_vertices(goal), out) as scratch:
+        with progress_bar() as progress:
+            result = tempose.transfer.transfer_motion(
+                trimmed, goal, listed, scratch=scratch, progress=progress, **settings
+            )
+        moved = time.perf_counter()
+        with progress_bar() as progress, writing(out):
+            tempose.save(out, result.clip, progress=releasing(progress, result.clip))
+        saved = time.perf_counter()
     if save_pairs is not None:
         with writing(save_pairs):
             tempose.transfer.save_pairs(save_pairs, result.pairs, source, target)
-    stages = {"load": loaded - began, **result.report["seconds"], "save": time.perf_counter() - moved}
+    stages = {"load": loaded - began, **result.report["seconds"], "save": saved - moved}
     inputs = {"source": source, "target": target, "out": str(out)}
     full = make_report("transfer", inputs, options, result.report | {"seconds": stages}, began)
     if report is not None:
@@ -68,6 +73,10 @@ def _trimmed(motion: Any, start: int, stop: int | None, step: int) -> Any:
     from tempose.clips.resample import select_frames
 
     return motion if (start, stop, step) == (0, None, 1) else select_frames(motion, start, stop, step)
+
+
+def _n_vertices(target: Any) -> int:
+    return len(getattr(target, "mesh", target).vertices)
 
 
 def _tell(report: dict[str, Any], json: bool) -> None:

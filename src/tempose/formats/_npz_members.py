@@ -8,6 +8,7 @@ import tokenize
 import warnings
 import zipfile
 import zlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
@@ -101,6 +102,25 @@ def read_single(path: str) -> Any:
         raise FormatError(f"{path}: expected a numpy array (.npy): {_one_line(error)}") from None
 
 
+class FrameBlocks:
+    """An array that is made block by block while it is written, along its first axis."""
+
+    dtype: np.dtype[Any]
+    """Type of the numbers."""
+    shape: tuple[int, ...]
+    """Shape of the whole."""
+
+    def blocks(self) -> Iterator[Any]:
+        """Make the blocks in order.
+
+        Yields
+        ------
+        ndarray
+            Of `dtype`; together they have `shape`.
+        """
+        raise NotImplementedError
+
+
 def write_members(stream: IO[bytes], arrays: dict[str, Any]) -> None:
     """Write arrays as a ``.npz`` archive, the same bytes for the same arrays.
 
@@ -108,13 +128,32 @@ def write_members(stream: IO[bytes], arrays: dict[str, Any]) -> None:
     ----------
     stream : binary file
         Where to write.
-    arrays : dict of str to ndarray
+    arrays : dict of str to ndarray or FrameBlocks
         Arrays by name; none may hold Python objects.
     """
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays.items():
             with archive.open(zipfile.ZipInfo(name + ".npy"), "w", force_zip64=True) as member:
-                np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
+                write_array(member, array)
+
+
+def write_array(stream: IO[bytes], array: Any) -> None:
+    """Write an array as numpy does.
+
+    Parameters
+    ----------
+    stream : binary file
+        Where to write.
+    array : ndarray or FrameBlocks
+        What to write; no Python objects.
+    """
+    if not isinstance(array, FrameBlocks):
+        np.lib.format.write_array(stream, np.asarray(array), allow_pickle=False)
+        return
+    head = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
+    np.lib.format.write_array_header_1_0(stream, head)
+    for block in array.blocks():
+        stream.write(np.ascontiguousarray(block, dtype=array.dtype).tobytes())
 
 
 def _read_array(stream: IO[bytes], size: int) -> Any:

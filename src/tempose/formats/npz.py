@@ -6,6 +6,7 @@ A foreign archive needs only ``vertices`` and ``faces``. What `write` adds makes
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,12 +15,13 @@ import numpy as np
 
 from tempose._files import atomic_path
 from tempose.clips import Mesh, MeshClip
-from tempose.formats._npz_members import read_members, read_single, write_members
+from tempose.formats._npz_members import FrameBlocks, read_members, read_single, write_array, write_members
 from tempose.formats._place import DEFAULT_FPS, inside, metres_per_unit, outside, settle
 from tempose.formats._table import Unit
 from tempose.formats.conventions import FormatError
 
 _GROUP = "group:"
+_BLOCK_VALUES = 500_000
 _MESH_KEYS = ("uv", "uv_faces", "colors", "polygons")
 _KEYS = ("vertices", "faces", "fps", "up", "unit", "rest", "source_fps", "name", *_MESH_KEYS)
 
@@ -108,16 +110,28 @@ def write(path: str, thing: Mesh | MeshClip, up: str, unit: float) -> None:
     unit : float
         Metres per unit of the file.
     """
-    vertices = outside(thing.vertices, up, unit)
-    if isinstance(thing, MeshClip) and unit == 1.0:
-        # scaled positions need float64 to come back as the same float32
-        vertices = vertices.astype(np.float32)
+    vertices: Any = outside(thing.vertices, up, unit) if isinstance(thing, Mesh) else _Frames(thing, up, unit)
     with atomic_path(path) as part, part.open("wb") as stream:
         if path.lower().endswith(".npy"):
-            np.save(stream, vertices, allow_pickle=False)
+            write_array(stream, vertices)
         else:
-            arrays = {"vertices": vertices} | _extras(thing, up, unit)
-            write_members(stream, arrays)
+            write_members(stream, {"vertices": vertices} | _extras(thing, up, unit))
+
+
+class _Frames(FrameBlocks):
+    """Frames in the file's axes and unit, some at a time: a clip may be larger than memory."""
+
+    def __init__(self, clip: MeshClip, up: str, unit: float) -> None:
+        # scaled positions need float64 to come back as the same float32
+        self.dtype = np.dtype(np.float32 if unit == 1.0 else np.float64)
+        self.shape = clip.vertices.shape
+        self._clip, self._up, self._unit = clip, up, unit
+
+    def blocks(self) -> Iterator[Any]:
+        step = max(1, _BLOCK_VALUES // max(self.shape[1], 1))
+        for start in range(0, self.shape[0], step):
+            frames = self._clip.vertices[start : start + step]
+            yield outside(frames, self._up, self._unit).astype(self.dtype)
 
 
 def _extras(thing: Mesh | MeshClip, up: str, unit: float) -> dict[str, Any]:

@@ -69,7 +69,7 @@ def _volume_measures(V: FloatArray, F: IntArray, V_rest: FloatArray) -> dict[str
     # texture seams split a closed surface into open pieces: welded, it encloses its volume again
     first, inverse = weld(V_rest)
     try:
-        volume = change_of_volume(V[:, first], inverse[F], V_rest[first])
+        volume = change_of_volume(V, first[inverse[F]], V_rest)
     except ValueError:  # a sheet encloses nothing
         return {"volume": None, "volume_worst": None, "volume_mean": None}
     return {
