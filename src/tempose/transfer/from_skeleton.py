@@ -11,6 +11,7 @@ from tempose.kinematics.roles import find_roles
 from tempose.rotations import multiply
 from tempose.transfer.alignment import align_reference
 from tempose.transfer.bones import Bones, make_bones, split_role
+from tempose.transfer.columns import Columns
 from tempose.transfer.facing import UP
 from tempose.transfer.feet import Feet, bone_feet, flat_stance
 from tempose.transfer.motion_transfer import Anchor, MotionTransfer
@@ -19,6 +20,7 @@ from tempose.transfer.pose import BonePose
 from tempose.transfer.reference import Reference, bone_motion, choose_reference
 from tempose.transfer.signs import consistent_signs
 from tempose.transfer.skin_pairs import estimate_joints
+from tempose.transfer.twist_columns import twist_columns
 from tempose.typing import FloatArray, IntArray
 
 
@@ -29,7 +31,7 @@ class Prepared:
     solver: MotionTransfer
     """Factorised target."""
     rotations: FloatArray
-    """(T, B, 4) rotations of the target's marks, signs agreeing."""
+    """(T, C, 4) rotations of the target's marks, signs agreeing: the bones first, then those between two."""
     anchor_path: FloatArray
     """(T, 3) movement of the source's anchor from its reference place, metres."""
     feet: Feet
@@ -41,7 +43,9 @@ class Prepared:
     owner: IntArray
     """(n,) bone of largest influence on each target vertex."""
     bones: Bones | None = None
-    """The bones, for a skeleton source."""
+    """The B bones, for a skeleton source."""
+    columns: Columns | None = None
+    """What the C rotations stand for: ``columns.rotations(Q_bones)`` makes them from (T, B, 4)."""
     motion: BonePose | None = None
     """(T, B) the source's bones."""
     target: BonePose | None = None
@@ -63,6 +67,7 @@ def prepare_skeleton(
     rest_clip: SkeletonClip | None = None,
     rest_frame: int | None = None,
     volume: float = 0.0,
+    twist: bool = True,
 ) -> Prepared:
     """Do everything that comes before the frames.
 
@@ -82,6 +87,8 @@ def prepare_skeleton(
         Frame of the reference pose, in `rest_clip` or the source.
     volume : float, default 0
         See `MotionTransfer`.
+    twist : bool, default True
+        Whether forearms, upper arms and thighs take up the twist at their ends little by little.
 
     Returns
     -------
@@ -96,12 +103,10 @@ def prepare_skeleton(
     roles = find_roles(clip.skeleton, mapping)
     bones = make_bones(clip.skeleton, tuple(dict.fromkeys(pairs.source)), roles)  # type: ignore[arg-type]
     column = np.array([bones.names.index(str(name)) for name in pairs.source])
-    solver = MotionTransfer(
-        mesh, mesh.faces[pairs.target].ravel(), np.repeat(column, 3), len(bones.names), volume=volume
-    )
+    solver, columns, target = _solver(mesh, pairs, bones, column, volume, twist)
     basis = solver.basis
     assert basis is not None
-    target = _target_pose(mesh, basis, bones, pairs)
+    basis = columns.of_bones(basis)
     reference = _reference(clip, bones, roles, target, rest_clip, rest_frame)
     moving = clip.frames(slice(reference.first_frame, None))
     motion = bone_motion(moving, bones, roles)
@@ -113,13 +118,14 @@ def prepare_skeleton(
     owner = basis.argmax(axis=1)
     return Prepared(
         solver,
-        Q,
+        columns.rotations(Q),
         _anchor_points(bones, motion) - _anchor_points(bones, reference.pose),
         bone_feet(bones, motion, target, owner, height, clip.fps),
         _leg_ratio(bones, target, motion),
         height,
         owner,
         bones,
+        columns,
         motion,
         target,
         reference.chosen,
@@ -152,8 +158,25 @@ def _reference(
     )
 
 
-def _target_pose(mesh: Mesh, basis: FloatArray, bones: Bones, pairs: Pairs) -> BonePose:
-    starts, ends = estimate_joints(mesh.vertices, basis, bones.parents)
+def _solver(
+    mesh: Mesh, pairs: Pairs, bones: Bones, column: IntArray, volume: float, twist: bool
+) -> tuple[MotionTransfer, Columns, BonePose]:
+    marked, B = mesh.faces[pairs.target], len(bones.names)
+    basis = None
+    if not all(name in pairs.joints and name in pairs.ends for name in bones.names):
+        basis = MotionTransfer(mesh, marked.ravel(), np.repeat(column, 3), B).basis
+    target = _target_pose(mesh, basis, bones, pairs)
+    columns = Columns(B)
+    if twist:
+        columns, column = twist_columns(bones, target, mesh.vertices[marked].mean(axis=1), column)
+    solver = MotionTransfer(mesh, marked.ravel(), np.repeat(column, 3), len(columns), volume=volume)
+    return solver, columns, target
+
+
+def _target_pose(mesh: Mesh, basis: FloatArray | None, bones: Bones, pairs: Pairs) -> BonePose:
+    starts, ends = np.zeros((2, len(bones.names), 3))
+    if basis is not None:
+        starts, ends = estimate_joints(mesh.vertices, basis, bones.parents)
     for b, name in enumerate(bones.names):
         if name in pairs.joints:
             starts[b] = pairs.joints[name]

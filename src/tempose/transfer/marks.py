@@ -9,6 +9,8 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 RING_PLACES = (0.27, 0.73)
 """Where along a bone the rings lie; nearer to the joints bends sharper."""
+PART_PLACES = {"forearm": (0.27, 0.5, 0.7, 0.9)}
+"""Parts with other rings: a forearm passes the twist of the hand on from ring to ring."""
 RING_SIZE = 12
 """Marked faces a ring."""
 _LAYER, _OUTLIER, _OUTER = 1.25, 1.7, 1.7
@@ -45,7 +47,7 @@ def mark_bones(
     roles: tuple[str, ...],
     starts: FloatArray,
     ends: FloatArray,
-    ring_places: tuple[float, ...] = RING_PLACES,
+    ring_places: tuple[float, ...] | None = None,
 ) -> tuple[IntArray, IntArray]:
     """Mark faces from skin weights.
 
@@ -61,8 +63,8 @@ def mark_bones(
         B body roles; head, hands, feet and toes are marked whole, others by rings.
     starts, ends : (B, 3) float
         Where each bone starts and ends in the rest pose.
-    ring_places : tuple of float, default (0.27, 0.73)
-        Fractions of the bone at which rings lie.
+    ring_places : tuple of float, optional
+        Fractions of the bone at which rings lie; (0.27, 0.73), and four on a forearm, if not given.
 
     Returns
     -------
@@ -75,10 +77,12 @@ def mark_bones(
     bones: list[IntArray] = []
     for b, role in enumerate(roles):
         mine = np.flatnonzero(owner == b)
-        if split_role(role)[1] in RIGID_PARTS:
+        part = split_role(role)[1]
+        if part in RIGID_PARTS:
             chosen = mine
         else:
-            chosen = _rings(V, F, centres, mine, starts[b], ends[b], ring_places)
+            places = ring_places or PART_PLACES.get(part, RING_PLACES)
+            chosen = _rings(V, F, centres, mine, starts[b], ends[b], places)
         faces.append(chosen)
         bones.append(np.full(len(chosen), b))
     return np.concatenate(faces), np.concatenate(bones)

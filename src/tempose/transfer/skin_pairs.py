@@ -7,7 +7,7 @@ import numpy as np
 from tempose.clips import Skeleton, SkinnedMesh
 from tempose.kinematics.roles import bones_of_role, find_roles
 from tempose.transfer.bones import bone_spans
-from tempose.transfer.marks import RING_PLACES, mark_bones
+from tempose.transfer.marks import mark_bones
 from tempose.transfer.pairs import Pairs
 from tempose.typing import FloatArray, IntArray
 
@@ -16,7 +16,7 @@ def pairs_from_skin(
     source: Skeleton,
     target: SkinnedMesh,
     mapping: dict[str, str] | None = None,
-    ring_places: tuple[float, ...] = RING_PLACES,
+    ring_places: tuple[float, ...] | None = None,
 ) -> Pairs:
     """Mark the faces of a skinned target for the joints of a source skeleton.
 
@@ -28,8 +28,8 @@ def pairs_from_skin(
         Mesh with weights.
     mapping : dict of str to str, optional
         Source joint to body role, where the names do not tell.
-    ring_places : tuple of float, default (0.27, 0.73)
-        Where rings lie along a bone.
+    ring_places : tuple of float, optional
+        Where rings lie along a bone; see `mark_bones`.
 
     Returns
     -------
