@@ -9,7 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tempose.typing import FloatArray
+from tempose.typing import FloatArray, IntArray
+
+BLOCK = 16
+"""Frames handled together after they are solved."""
 
 
 def make_frames(n_frames: int, n_vertices: int, scratch: str | os.PathLike[str] | None = None) -> FloatArray:
@@ -44,7 +47,36 @@ def make_frames(n_frames: int, n_vertices: int, scratch: str | os.PathLike[str] 
         raise OSError(f"{folder}: no room for frames: {needed >> 20} MB are needed, {free >> 20} MB are free")
     number = sum(1 for _ in folder.glob("frames-*.bin"))
     path = folder / f"frames-{os.getpid()}-{number}.bin"
-    return np.memmap(path, dtype=np.float32, mode="w+", shape=shape)
+    return _FrameFile(path, dtype=np.float32, mode="w+", shape=shape)
+
+
+class _FrameFile(np.memmap):
+    """A memory map that lets go of what was read before when it is read from again."""
+
+    def __getitem__(self, index: Any) -> Any:
+        release(self)
+        return super().__getitem__(index)
+
+
+def gather(frames: FloatArray, vertices: IntArray) -> FloatArray:
+    """Read some vertices of every frame.
+
+    Parameters
+    ----------
+    frames : (T, n, 3) float
+        From `make_frames`.
+    vertices : (k,) int
+        Which vertices.
+
+    Returns
+    -------
+    (T, k, 3) ndarray of float64
+        Their positions.
+    """
+    found = np.zeros((len(frames), len(vertices), 3))
+    for start in range(0, len(frames), BLOCK):
+        found[start : start + BLOCK] = frames[start : start + BLOCK][:, vertices]
+    return found
 
 
 def release(frames: Any) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import KDTree
 
+from tempose.transfer.frames import gather
 from tempose.typing import FloatArray, IntArray
 
 _SUPPORT = 48
@@ -61,4 +62,5 @@ def apply_regressor(V: FloatArray, vertices: IntArray, weights: FloatArray) -> F
     (T, k, 3) ndarray
         Points.
     """
-    return np.einsum("ks,tksi->tki", weights, np.asarray(V)[:, vertices])
+    used = gather(V, vertices.ravel()).reshape(len(V), *vertices.shape, 3)
+    return np.einsum("ks,tksi->tki", weights, used)

@@ -12,6 +12,7 @@ from tempose.metrics import volume_change as change_of_volume
 from tempose.rotations import normalise
 from tempose.transfer.bones import Bones, split_role
 from tempose.transfer.feet import Feet
+from tempose.transfer.frames import gather
 from tempose.transfer.joint_regressor import apply_regressor, regress_points
 from tempose.transfer.marks import RIGID_PARTS
 from tempose.transfer.motion_transfer import MotionTransfer
@@ -178,8 +179,15 @@ def foot_measures(
     points = [np.array([f]) for f in range(len(feet.names))]
     deep = penetration(V, height, ground)
     return {
-        "skate": skate(V, list(feet.vertices), feet.contact, height, fps),
+        "skate": _foot_skate(feet, V, height, fps),
         "source_skate": skate(feet.trajectories, points, feet.contact, source_height, fps),
         "penetration_cm": deep.max_cm,
         "contact_frames": {name: int(feet.contact[:, f].sum()) for f, name in enumerate(feet.names)},
     }
+
+
+def _foot_skate(feet: Feet, V: FloatArray, height: float, fps: float) -> float | None:
+    # the feet of all frames are read once, some frames at a time: V may be a file
+    used, place = np.unique(np.concatenate(feet.vertices), return_inverse=True)
+    parts = np.split(place, np.cumsum([len(foot) for foot in feet.vertices])[:-1])
+    return skate(gather(V, used), parts, feet.contact, height, fps)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
-from tempose.transfer.frames import make_frames, release
+from tempose.transfer.frames import BLOCK, gather, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.matching import Matched, match, prepare
 from tempose.transfer.measures import (
@@ -25,9 +25,6 @@ from tempose.transfer.placement import Placement, place_clip
 from tempose.transfer.result import TransferResult
 from tempose.transfer.template import template_clip
 from tempose.typing import FloatArray, Progress, silent
-
-BLOCK = 16
-"""Frames handled together after they are solved."""
 
 
 @dataclass
@@ -137,7 +134,7 @@ def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | 
 
 def _place(job: Prepared, V: FloatArray, fps: float, contacts: bool) -> Placement:
     mesh = job.solver.mesh
-    soles = [np.asarray(V[:, mine], dtype=np.float64) for mine in job.feet.vertices]
+    soles = [gather(V, mine) for mine in job.feet.vertices]
     ground = float(mesh.vertices[:, 1].min())
     placement = place_clip(
         job.anchor_path, soles, job.feet.contact, ground, mesh.height, job.leg_ratio, fps, contacts
