@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.transfer import Pairs, load_pairs, save_pairs
 
-KNOWN = "kind, source, target, pairs, part, joints, ends"
+KNOWN = "kind, source, target, pairs, part, joints, ends, how, comment"
 
 
 @pytest.fixture
@@ -28,6 +28,7 @@ def write(tmp_path: Path):
 
 def same(a: Pairs, b: Pairs) -> None:
     assert a.kind == b.kind and a.parts == b.parts and list(a.joints) == list(b.joints)
+    assert a.how == b.how and a.comment == b.comment
     assert_array_equal(a.source, b.source)
     assert_array_equal(a.target, b.target)
     for places, others in ((a.joints, b.joints), (a.ends, b.ends)):
@@ -42,6 +43,7 @@ def same(a: Pairs, b: Pairs) -> None:
         Pairs("vertices", [4, 0, 9], [1, 2, 3]),
         Pairs("faces", [4, 0, 9], [1, 2, 3], ("leg", "ear", 'Öhr, "left"\n')),
         Pairs("joints", ("Hips", "mixamorig:Hips", 'a "b"'), [7, 8, 2**31 - 1]),
+        Pairs("faces", [4, 0], [1, 2], how=("picked", "mirror"), comment="left knee was hard\nsee \"notes\""),
         Pairs("joints", ("a", "b"), [0, 1], ("p", "q"), {"a": [0.1, 1 / 3, -1e-17]}, {"b": [1, 2, 3]}),
     ],
 )
@@ -50,9 +52,9 @@ def test_what_is_saved_is_loaded(pairs: Pairs, tmp_path: Path) -> None:
     save_pairs(path, pairs, source="walk.bvh", target="scan.obj")
     loaded = load_pairs(path)
     same(pairs, loaded)
-    assert loaded.origin == str(path)
+    assert loaded.origin == str(path) and loaded.files == ("walk.bvh", "scan.obj")
     again = tmp_path / "again.JSON"
-    save_pairs(again, loaded, source="walk.bvh", target="scan.obj")
+    save_pairs(again, loaded)
     assert again.read_bytes() == path.read_bytes()
     # a person can edit it: one pair a line, the files named
     table = json.loads(path.read_text(encoding="utf-8"))

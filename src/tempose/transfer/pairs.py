@@ -13,6 +13,7 @@ from tempose.typing import FloatArray, IntArray
 
 Kind = Literal["joints", "faces", "vertices"]
 KINDS: tuple[Kind, ...] = ("joints", "faces", "vertices")
+HOW = ("picked", "suggested", "ring", "mirror", "automatic")
 FEWEST = {"joints": 2, "faces": 3, "vertices": 3}
 
 
@@ -34,6 +35,13 @@ class Pairs:
     """Joint name to the (3,) far end of its bone in the target, metres; may be empty."""
     origin: str = ""
     """Where the pairs come from, for messages."""
+    how: tuple[str, ...] = ()
+    """How each pair came to be: ``"picked"`` by a person, ``"suggested"`` and accepted, ``"ring"``,
+    ``"mirror"`` or ``"automatic"``; or nothing."""
+    comment: str = ""
+    """What a person wrote about them."""
+    files: tuple[str, str] = ("", "")
+    """Names of the source and target files, for a person to read."""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -51,6 +59,11 @@ class Pairs:
             )
         if self.parts and len(self.parts) != len(target):
             raise ValueError(f"part must name every one of the {len(target)} pairs, got {len(self.parts)}")
+        if self.how and len(self.how) != len(target):
+            raise ValueError(f"how must stand for every one of the {len(target)} pairs, got {len(self.how)}")
+        strange = [word for word in self.how if word not in HOW]
+        if strange:
+            raise ValueError(f"how of a pair must be one of {', '.join(HOW)}, got {strange[0]!r}")
         for name in ("joints", "ends"):
             places = getattr(self, name)
             set_(self, name, {k: as_floats(v, f"{name}[{k!r}]", (3,)) for k, v in places.items()})

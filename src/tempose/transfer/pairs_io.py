@@ -15,7 +15,7 @@ import yaml
 from tempose._files import atomic_path
 from tempose.transfer.pairs import KINDS, Pairs
 
-KEYS = ("kind", "source", "target", "pairs", "part", "joints", "ends")
+KEYS = ("kind", "source", "target", "pairs", "part", "joints", "ends", "how", "comment")
 
 
 def load_pairs(path: str | os.PathLike[str]) -> Pairs:
@@ -74,17 +74,26 @@ def save_pairs(path: str | os.PathLike[str], pairs: Pairs, source: str = "", tar
     pairs : Pairs
         What to write.
     source, target : str
-        Names of the two files, kept for the reader.
+        Names of the two files, kept for the reader; those of `pairs` if not given.
     """
     sources = pairs.source if pairs.kind == "joints" else [int(i) for i in pairs.source]
     rows = [json.dumps([a, int(b)]) for a, b in zip(sources, pairs.target)]
-    head = {"kind": pairs.kind, "source": source, "target": target}
+    head: dict[str, Any] = {
+        "kind": pairs.kind,
+        "source": source or pairs.files[0],
+        "target": target or pairs.files[1],
+    }
+    if pairs.comment:
+        lines = pairs.comment.split("\n")
+        head["comment"] = lines[0] if len(lines) == 1 else lines
     if pairs.parts:
-        head["part"] = list(pairs.parts)  # type: ignore[assignment]
+        head["part"] = list(pairs.parts)
+    if pairs.how:
+        head["how"] = list(pairs.how)
     for key in ("joints", "ends"):
         places = getattr(pairs, key)
         if places:
-            head[key] = {name: [float(x) for x in p] for name, p in places.items()}  # type: ignore[assignment]
+            head[key] = {name: [float(x) for x in p] for name, p in places.items()}
     body = ",\n ".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in head.items())
     with atomic_path(path) as part:
         part.write_text("{" + body + ',\n "pairs": [\n  ' + ",\n  ".join(rows) + "\n ]}\n", encoding="utf-8")
@@ -124,9 +133,11 @@ def _from_table(data: Any, path: str) -> Pairs:
         if not fits or row[1] < 0 or (kind != "joints" and (type(row[0]) is not int or row[0] < 0)):
             noun = "[joint name, face index]" if kind == "joints" else "[index, index] from 0"
             raise ValueError(f"pair {i} must be {noun}, found {str(row)[:60]}")
-    part, joints, ends = data.get("part", []), data.get("joints", {}), data.get("ends", {})
-    if not isinstance(part, list) or not all(isinstance(name, str) for name in part):
-        raise ValueError(f"part must be a list of names, found {str(part)[:60]}")
+    part, how = _words(data, "part", "names"), _words(data, "how", "words")
+    comment = data.get("comment", "")
+    if not isinstance(comment, str):
+        comment = "\n".join(_words(data, "comment", "lines"))
+    joints, ends = data.get("joints", {}), data.get("ends", {})
     for name, places in (("joints", joints), ("ends", ends)):
         if not isinstance(places, dict):
             raise ValueError(f"{name} must be a table of joint names and positions, found {str(places)[:60]}")
@@ -135,11 +146,28 @@ def _from_table(data: Any, path: str) -> Pairs:
         kind,
         source,
         np.array([row[1] for row in rows]),
-        tuple(part),
+        part,
         joints,
         ends,
         origin=path,
+        how=how,
+        comment=comment,
+        files=(_file_name(data, "source"), _file_name(data, "target")),
     )
+
+
+def _words(data: dict[str, Any], key: str, noun: str) -> tuple[str, ...]:
+    words = data.get(key, [])
+    if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
+        raise ValueError(f"{key} must be a list of {noun}, found {str(words)[:60]}")
+    return tuple(words)
+
+
+def _file_name(data: dict[str, Any], key: str) -> str:
+    name = data.get(key, "")
+    if not isinstance(name, str):
+        raise ValueError(f"{key} must be the name of a file, found {str(name)[:60]}")
+    return name
 
 
 def _from_cons(text: str, path: str) -> Pairs:
