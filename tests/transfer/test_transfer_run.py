@@ -207,7 +207,8 @@ def test_joints_are_estimated_where_pairs_state_none() -> None:
     # judged by the true joints
     job = prepare_skeleton(walking(), body.mesh, bare)
     truth = prepare_skeleton(walking(), body.mesh, full)
-    angle = np.degrees(angle_between(job.rotations, truth.rotations))
+    B = len(job.bones.names)
+    angle = np.degrees(angle_between(job.rotations[:, :B], truth.rotations[:, :B]))
     assert np.median(angle) < 12
     assert report["flipped_percent"] < 0.5
 
@@ -226,7 +227,7 @@ def test_volume_edges_keep_the_body_fuller() -> None:
 
 def test_a_limb_wound_up_is_warned_of() -> None:
     angle = np.radians(np.linspace(0, 300, 31))
-    wound = {"left_hand": wxyz(Rotation.from_rotvec(angle[:, None] * [1.0, 0, 0]))}
+    wound = {"left_shin": wxyz(Rotation.from_rotvec(angle[:, None] * [0, 1.0, 0]))}
     report = transfer_motion(clip_of(t_pose(), wound, 31), human_body()).report
     assert report["quaternion_norm_min"] < 0.5
     assert any("shortest quaternion" in w for w in report["warnings"])
