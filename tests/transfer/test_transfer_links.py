@@ -12,7 +12,15 @@ from transfer_zoo import ZOO, pieces, sheet, solver_for, sphere, tube, volume_of
 from tempose.clips import Mesh
 from tempose.geometry import cotangent_laplacian, edge_laplacian, vertex_normals
 from tempose.transfer import MotionTransfer
-from tempose.transfer.links import LINK_RADIUS, LINK_WEIGHT, ExtraEdges, inner_edges, link_pieces
+from tempose.transfer.links import (
+    LINK_RADIUS,
+    LINK_WEIGHT,
+    SHELL,
+    ExtraEdges,
+    inner_edges,
+    link_pieces,
+    shell_edges,
+)
 
 
 def joined(*meshes: Mesh) -> Mesh:
@@ -208,6 +216,49 @@ def test_inner_edges_hold_the_volume_of_a_bent_tube(degrees: float) -> None:
     assert loss[0] > 0.02
     assert loss[0] > loss[1] > loss[2]
     assert loss[2] < 0.5 * loss[0]
+
+
+def cloth(thickness: float, n: int = 25) -> Mesh:
+    """Make a flat closed cloth of 1 by 1 in x and y, two layers in z."""
+    x = np.linspace(0.0, 1.0, n)
+    V = np.array([(a, b, z) for z in (thickness, 0.0) for b in x for a in x])
+    at = np.arange(n * n).reshape(n, n)
+    quads = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1).reshape(-1, 4)
+    above = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    rim = np.r_[at[0, :-1], at[:-1, -1], at[-1, :0:-1], at[:0:-1, 0]]
+    after = np.roll(rim, -1)
+    low, low_after = rim + n * n, after + n * n
+    side = np.concatenate([np.stack([rim, low, after], 1), np.stack([after, low, low_after], 1)])
+    return Mesh(V, np.concatenate([above, above[:, ::-1] + n * n, side]))
+
+
+def test_the_sides_of_a_thin_cloth_are_tied_and_those_of_a_thick_one_are_not() -> None:
+    thin, thick = cloth(0.8 * SHELL), cloth(2.0 * SHELL)
+    tied = shell_edges(thin.vertices, thin.faces)
+    half = len(thin.vertices) // 2
+    inside = {(int(i), int(i) + half) for i in np.arange(half).reshape(25, 25)[1:-1, 1:-1].ravel()}
+    assert inside <= as_set(tied)
+    assert_array_equal(tied.weights, LINK_WEIGHT)
+    assert len(shell_edges(thick.vertices, thick.faces).pairs) == 0
+    assert len(shell_edges(thin.vertices, thin.faces[:0]).pairs) == 0
+
+
+def test_layers_of_a_cloth_whose_sides_are_moved_differently_do_not_cross() -> None:
+    mesh = cloth(0.8 * SHELL)
+    half = len(mesh.vertices) // 2
+    x = mesh.vertices[:half, 0]
+    upper = [np.flatnonzero(x < 0.2), np.flatnonzero(x > 0.8)]
+    lower = [half + np.flatnonzero(x < 0.4), half + np.flatnonzero(x > 0.6)]
+    ends = [np.concatenate(both) for both in zip(upper, lower)]
+    solver = MotionTransfer(mesh, np.concatenate(ends), np.repeat([0, 1], [len(e) for e in ends]), 2)
+    bend = wxyz(Rotation.from_rotvec([0, np.pi / 3, 0]))
+    V = solver.pose(np.stack([[1.0, 0, 0, 0], bend]))
+    gap = V[:half] - V[half:]
+    outwards = vertex_normals(V, mesh.faces)[:half]
+    inner = np.arange(half).reshape(25, 25)[1:-1, 1:-1].ravel()
+    apart = np.einsum("nk,nk->n", gap, outwards)[inner] / (0.8 * SHELL)
+    assert apart.min() > 0.7
+    assert apart.max() < 1.4
 
 
 def test_edges_add_up() -> None:

@@ -14,6 +14,7 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 LINK_WEIGHT = 5.0
 LINK_RADIUS = 0.003
+SHELL = 0.01
 _MOST_LINKS = 40
 _NO_HOLD = 1e-9
 _FIRST_STEP, _GROWTH, _NEAR = 0.003, 1.2, 6
@@ -157,8 +158,31 @@ def inner_edges(V: FloatArray, F: IntArray, strength: float) -> ExtraEdges:
     return ExtraEdges(np.column_stack([i, j]), weights)
 
 
-def _opposite_vertices(V: FloatArray, normals: FloatArray) -> IntArray:
-    """Nearest vertex inwards that faces the other way, -1 where there is none.
+def shell_edges(V: FloatArray, F: IntArray) -> ExtraEdges:
+    """Join the two sides of what is thin, such as cloth with an inside, so that they never cross.
+
+    Parameters
+    ----------
+    V : (n, 3) float
+        Rest vertices, outward normals.
+    F : (m, 3) int
+        Faces.
+
+    Returns
+    -------
+    ExtraEdges
+        Between vertices that face each other through less than 1 % of the diagonal, weighted as links.
+    """
+    if len(F) == 0:
+        return ExtraEdges.none()
+    partner = _opposite_vertices(V, vertex_normals(V, F), SHELL)
+    i = np.flatnonzero(partner >= 0)
+    pairs = np.unique(np.sort(np.column_stack([i, partner[i]]), axis=1), axis=0).reshape(-1, 2)
+    return ExtraEdges(pairs, np.full(len(pairs), LINK_WEIGHT))
+
+
+def _opposite_vertices(V: FloatArray, normals: FloatArray, within: float = 1.0) -> IntArray:
+    """Nearest vertex inwards, not further than a share of the diagonal, that faces the other way; else -1.
 
     Found by marching inwards along the normal in growing steps: the search for all vertices costs a few
     dozen nearest-neighbour queries each, whatever the thickness of the body.
@@ -166,14 +190,14 @@ def _opposite_vertices(V: FloatArray, normals: FloatArray) -> IntArray:
     tree = KDTree(V)
     partner = np.full(len(V), -1, dtype=np.int64)
     open_ = np.flatnonzero(np.linalg.norm(normals, axis=1) > 0.5)
-    reach = float(np.linalg.norm(np.ptp(V, axis=0)))
-    depth = _FIRST_STEP * reach
-    while len(open_) and depth < reach:
+    diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
+    depth = _FIRST_STEP * diagonal
+    while len(open_) and depth < within * diagonal:
         near = _query(tree, V[open_] - depth * normals[open_], _NEAR)[1]
         distance = np.linalg.norm(V[near] - V[open_][:, None], axis=2)
         found = _faces_opposite(V, normals, open_, near, distance)
         first = np.where(found, distance, np.inf).argmin(axis=1)
-        hit = found.any(axis=1)
+        hit = found.any(axis=1) & (distance[np.arange(len(open_)), first] < within * diagonal)
         partner[open_[hit]] = near[hit, first[hit]]
         open_ = open_[~hit]
         depth *= _GROWTH

@@ -13,7 +13,7 @@ from tempose.geometry import cotangent_laplacian, edge_laplacian, weld
 from tempose.rotations import rotate
 from tempose.transfer.fields import HarmonicFields
 from tempose.transfer.glue import PoissonGlue
-from tempose.transfer.links import ExtraEdges, inner_edges, link_pieces
+from tempose.transfer.links import ExtraEdges, inner_edges, link_pieces, shell_edges
 from tempose.typing import FloatArray, IntArray
 
 
@@ -94,7 +94,7 @@ class MotionTransfer:
         field_matrix = field_matrix + edge_laplacian(*_slight_edges(F), len(V))
         self.fields = HarmonicFields(field_matrix, self._inverse[vertices], bones, n_bones)
         inner = inner_edges(V, F, volume) if volume > 0 else ExtraEdges.none()
-        self._glue = PoissonGlue(V, F, self.links + inner)
+        self._glue = PoissonGlue(V, F, self.links + shell_edges(V, F) + inner)
         self._origin = V[0]
         self.anchor = anchor or _centroid_anchor(mesh, vertices)
 
