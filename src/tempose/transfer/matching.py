@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
+from tempose.kinematics.roles import find_roles
 from tempose.transfer.from_mesh import prepare_mesh
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.skin_pairs import pairs_from_skin
+from tempose.transfer.upright import stand_up, turned_pairs
 from tempose.typing import FloatArray
 
 
@@ -22,7 +24,9 @@ class Matched:
     mesh: Mesh
     """The target, standing upright."""
     pairs: Pairs
-    """Checked against source and target."""
+    """Checked against the source and `mesh`."""
+    listed: Pairs
+    """The same pairs for the target as it was given, to be saved."""
     warnings: tuple[str, ...] = ()
     """What is doubtful."""
     facts: dict[str, Any] = field(default_factory=dict[str, Any])
@@ -34,6 +38,7 @@ def match(
     target: Mesh | SkinnedMesh,
     pairs: Pairs | None = None,
     mapping: dict[str, str] | None = None,
+    embed: bool = False,
 ) -> Matched:
     """Check what was given and find the pairs if none were.
 
@@ -44,9 +49,11 @@ def match(
     target : Mesh or SkinnedMesh
         What shall move.
     pairs : Pairs, optional
-        Correspondences; from the target's skin weights if not given.
+        Correspondences; from the target's skin weights if not given, else from a skeleton placed inside it.
     mapping : dict of str to str, optional
         Source joint to body role.
+    embed : bool, default False
+        Whether skin weights are left alone.
 
     Returns
     -------
@@ -61,18 +68,24 @@ def match(
     mesh = target.mesh if isinstance(target, SkinnedMesh) else target
     _check_bodies(source, mesh)
     if isinstance(source, MeshClip):
-        return Matched(mesh, _mesh_pairs(source, mesh, pairs))
-    if pairs is None:
-        if not isinstance(target, SkinnedMesh):
-            raise ValueError(
-                "the target has no skin weights to take pairs from; give a pairs file "
-                "(JSON) or the target's weights (.mhw)"
-            )
+        pairs = _mesh_pairs(source, mesh, pairs)
+        return Matched(mesh, pairs, pairs)
+    doubts: tuple[str, ...] = ()
+    facts: dict[str, Any] = {}
+    if pairs is None and isinstance(target, SkinnedMesh) and not embed:
         pairs = pairs_from_skin(source.skeleton, target, mapping)
+    elif pairs is None:
+        from tempose.transfer.embedded_pairs import embedding_doubts, embedding_facts, pairs_from_embedding
+
+        pairs, embedding = pairs_from_embedding(source.skeleton, mesh, mapping)
+        doubts, facts = embedding_doubts(embedding), {"embedding": embedding_facts(embedding)}
     if pairs.kind != "joints":
         raise ValueError(f"pairs of kind {pairs.kind!r} need a mesh clip as source, got a skeleton")
     pairs.check(0, len(mesh.faces), source.skeleton.names)
-    return Matched(mesh, pairs)
+    roles = {source.skeleton.names[j]: role for role, j in find_roles(source.skeleton, mapping).items()}
+    standing = stand_up(mesh, pairs, roles)
+    notes = (*doubts, standing.note) if standing.note else doubts
+    return Matched(standing.mesh, turned_pairs(pairs, standing.turn), pairs, notes, facts)
 
 
 def _check_bodies(source: SkeletonClip | MeshClip, mesh: Mesh) -> None:

@@ -43,6 +43,7 @@ def transfer_motion(
     pairs: Pairs | None = None,
     *,
     mapping: dict[str, str] | None = None,
+    embed: bool = False,
     source_rest: SkeletonClip | Mesh | None = None,
     rest_frame: int | None = None,
     volume: float = 0.0,
@@ -60,9 +61,12 @@ def transfer_motion(
     target : Mesh or SkinnedMesh
         What shall move, at rest.
     pairs : Pairs, optional
-        Correspondences; from the target's skin weights if not given.
+        Correspondences; from the target's skin weights if not given, or without weights from a human
+        skeleton placed inside it.
     mapping : dict of str to str, optional
         Source joint to body role, where the names do not tell.
+    embed : bool, default False
+        Whether the target's own skin weights are left alone and a skeleton is placed inside it.
     source_rest : SkeletonClip or Mesh, optional
         Where the source's reference pose stands, if not in the source.
     rest_frame : int, optional
@@ -82,7 +86,8 @@ def transfer_motion(
     Returns
     -------
     TransferResult
-        The moving target, in metres; its vertices, faces and rest are those of the target.
+        The moving target, in metres; its vertices, faces and rest are those of the target, stood up if it
+        lies or its up axis was guessed wrong, which the report says.
 
     Raises
     ------
@@ -90,7 +95,7 @@ def transfer_motion(
         If the source is empty, pairs do not fit, or the target cannot be moved; the message says which.
     """
     clock = _Clock()
-    matched = match(source, target, pairs, mapping)
+    matched = match(source, target, pairs, mapping, embed)
     mesh = matched.mesh
     clock.lap("pairs")
     job = prepare(
@@ -116,7 +121,7 @@ def transfer_motion(
         clock.lap("measures")
     report |= _facts(job, matched, placement)
     report["seconds"] = clock.seconds | {"total": sum(clock.seconds.values())}
-    return TransferResult(clip, matched.pairs, report, _picture(source, job))
+    return TransferResult(clip, matched.listed, report, _picture(source, job))
 
 
 def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | None) -> FloatArray:
