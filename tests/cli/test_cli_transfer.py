@@ -201,3 +201,38 @@ def test_walk_onto_a_human_without_a_click(
     report = json.loads(ran.out)
     assert ran.code == 0 and tempose.formats.load_clip(out).n_frames in (13, 14)
     assert report["bone_direction_deg"]["mean"] < 6 and report["flipped_percent"] < 0.05
+
+
+@pytest.mark.parametrize("out", ["out.npz", "out.glb", "out.####.ply", "out.npy", "out"])
+def test_a_long_clip_goes_by_way_of_the_disk_and_comes_out_the_same(
+    run: Run, job: Path, monkeypatch: pytest.MonkeyPatch, out: str
+) -> None:
+    def files() -> dict[str, bytes]:
+        return {str(p): p.read_bytes() for p in Path().rglob("*") if p.is_file() and "out" in str(p)}
+
+    words = [out if word == "out.npz" else word for word in WORDS]
+    assert run(*words).code == 0
+    short = files()
+    assert short
+    monkeypatch.setattr("tempose.cli.transfer_frames.IN_MEMORY", 0)
+    assert run(*words).code == 0
+    assert files() == short
+    assert not list(Path().rglob(".*")), "nothing is left of the frames"
+
+
+def test_an_interrupted_long_clip_leaves_nothing(
+    run: Run, job: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempose.cli.transfer_frames.IN_MEMORY", 0)
+    before = sorted(os.listdir())
+
+    def full(*_: Any, **__: Any) -> None:
+        assert any(name.startswith(".out.npz.") for name in os.listdir())
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(tempose, "save", full)
+    ran = run(*WORDS)
+    assert ran.code == 2 and "out.npz: No space left" in ran.err
+    monkeypatch.setattr(tempose, "save", lambda *_, **__: (_ for _ in ()).throw(KeyboardInterrupt()))
+    assert run(*WORDS).code == 130
+    assert sorted(os.listdir()) == before

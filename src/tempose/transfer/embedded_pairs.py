@@ -13,7 +13,7 @@ from tempose.transfer.skin_pairs import pairs_from_skin
 
 REFUSED = 2.5
 """Penalty from which a target is taken for no human; doubt begins at 1."""
-HOW_TO_GO_ON = "give pairs (tempose transfer --pairs FILE) or a target with skin weights"
+HOW_TO_GO_ON = "give a pairs file (--pairs) or a target with skin weights"
 _FEWEST_ROLES = 4
 
 
