@@ -9,6 +9,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from tempose.metrics import detect_contacts
 from tempose.transfer.bones import Bones, split_role
+from tempose.transfer.legs import Leg, bone_leg, mesh_leg
 from tempose.transfer.pose import BonePose
 from tempose.typing import BoolArray, FloatArray, IntArray
 
@@ -29,10 +30,20 @@ class Feet:
     """Vertices of each target foot."""
     contact: BoolArray
     """(T, f) whether the source foot is on the ground."""
+    legs: tuple[Leg, ...] = ()
+    """Leg of the target above each foot; none where the target at rest was not given."""
+    ankles: FloatArray | None = None
+    """(T, f, 3) metres: the ankle of each source foot, or its ball where no ankle is known."""
 
 
 def bone_feet(
-    bones: Bones, motion: BonePose, target: BonePose, owner: IntArray, height: float, fps: float
+    bones: Bones,
+    motion: BonePose,
+    target: BonePose,
+    owner: IntArray,
+    height: float,
+    fps: float,
+    V: FloatArray | None = None,
 ) -> Feet:
     """Feet of bodies made of bones.
 
@@ -50,23 +61,47 @@ def bone_feet(
         Height of the source, metres.
     fps : float
         Frames per second.
+    V : (n, 3) float, optional
+        Target at rest, metres, from which its legs are found.
 
     Returns
     -------
     Feet
         By role; for other bodies the leaves of the tree that reach the ground. None if there are none.
     """
-    names: list[str] = []
-    points: list[FloatArray] = []
-    vertices: list[IntArray] = []
-    for group, ball in _foot_groups(bones, target):
-        mine = np.flatnonzero(np.isin(owner, group))
-        if len(mine):
-            names.append(bones.roles[group[0]] or bones.names[group[0]])
-            points.append(motion.ends[:, ball] if ball == group[0] else motion.starts[:, ball])
-            vertices.append(mine)
-    trajectories = np.stack(points, axis=1) if points else np.zeros((len(motion.starts), 0, 3))
-    return Feet(tuple(names), trajectories, tuple(vertices), detect_contacts(trajectories, height, fps))
+    found = [
+        (group, ball, mine)
+        for group, ball in _foot_groups(bones, target)
+        if len(mine := np.flatnonzero(np.isin(owner, group)))
+    ]
+    if not found:
+        return no_feet(len(motion.starts))
+    balls = [motion.ends[:, ball] if ball == group[0] else motion.starts[:, ball] for group, ball, _ in found]
+    trajectories = np.stack(balls, axis=1)
+    return Feet(
+        tuple(bones.roles[group[0]] or bones.names[group[0]] for group, _, _ in found),
+        trajectories,
+        tuple(mine for _, _, mine in found),
+        detect_contacts(trajectories, height, fps),
+        () if V is None else tuple(bone_leg(bones, group, target, owner, V) for group, _, _ in found),
+        np.stack([motion.starts[:, group[0]] for group, _, _ in found], axis=1),
+    )
+
+
+def no_feet(n_frames: int) -> Feet:
+    """Return the feet of a body that has none.
+
+    Parameters
+    ----------
+    n_frames : int
+        Number of frames T.
+
+    Returns
+    -------
+    Feet
+        Empty lists.
+    """
+    return Feet((), np.zeros((n_frames, 0, 3)), (), np.zeros((n_frames, 0), dtype=bool))
 
 
 def _foot_groups(bones: Bones, target: BonePose) -> list[tuple[list[int], int]]:
@@ -155,7 +190,7 @@ def mesh_feet(
     low &= V_target[target, 1] < V_target[:, 1].min() + 2 * _NEAR_GROUND * height2
     chosen = np.flatnonzero(low)
     if len(chosen) == 0:
-        return Feet((), np.zeros((len(V), 0, 3)), (), np.zeros((len(V), 0), dtype=bool))
+        return no_feet(len(V))
     labels = np.ones(1, dtype=int)
     if len(chosen) > 1:
         labels = fcluster(linkage(V_rest[source[chosen]], "single"), _FOOT_GAP * height, "distance")
@@ -166,7 +201,11 @@ def mesh_feet(
         points.append(np.asarray(V[:, source[mine]], dtype=np.float64).mean(axis=1))
         middle = V_target[target[mine]].mean(axis=0)
         close = np.linalg.norm(V_target - middle, axis=1) < 0.1 * height2
-        vertices.append(np.flatnonzero(close & (V_target[:, 1] < middle[1] + 0.05 * height2)))
+        foot = np.flatnonzero(close & (V_target[:, 1] < middle[1] + 0.05 * height2))
+        vertices.append(foot if len(foot) else np.unique(target[mine]))
     trajectories = np.stack(points, axis=1)
     names = tuple(f"foot {i + 1}" for i in range(len(points)))
-    return Feet(names, trajectories, tuple(vertices), detect_contacts(trajectories, height, fps))
+    every = np.concatenate(vertices)
+    legs = tuple(mesh_leg(V_target, foot, np.setdiff1d(every, foot)) for foot in vertices)
+    contact = detect_contacts(trajectories, height, fps)
+    return Feet(names, trajectories, tuple(vertices), contact, legs, trajectories)

@@ -120,7 +120,7 @@ def prepare_skeleton(
         solver,
         columns.rotations(Q),
         _anchor_points(bones, motion) - _anchor_points(bones, reference.pose),
-        bone_feet(bones, motion, target, owner, height, clip.fps),
+        bone_feet(bones, motion, target, owner, height, clip.fps, mesh.vertices),
         _leg_ratio(bones, target, motion),
         height,
         owner,

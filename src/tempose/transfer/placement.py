@@ -6,21 +6,29 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
+from tempose.linalg import SparseCholesky
 from tempose.metrics import sole_velocities
+from tempose.transfer.foot_hold import hold_feet
+from tempose.transfer.soles import HORIZONTAL, Sole, find_sole
+from tempose.transfer.steady_path import second_differences
 from tempose.typing import BoolArray, FloatArray
 
-_SOLE = 0.01
 _LEAST_TRAVEL = 0.05
 """Speed of the hips in contact, in heights a second, below which a scale means nothing."""
+_ROOT_TIME = 0.05
+"""Seconds: what the feet ask of the root faster than this is left to the legs."""
 
 
 @dataclass(frozen=True)
 class Placement:
-    """A translation a frame and how it was found."""
+    """A translation a frame, a displacement a foot, and how they were found."""
 
     shift: FloatArray
     """(T, 3) metres, added to frames whose anchor is at its rest place."""
+    feet: FloatArray
+    """(T, f, 3) metres, by which each foot is displaced besides."""
     scale: float
     """Target metres per source metre, horizontally."""
     scale_vertical: float
@@ -41,7 +49,7 @@ def place_clip(
     fps: float,
     hold: bool = True,
 ) -> Placement:
-    """Find the translation of every frame.
+    """Find the translation of every frame and the displacement of every foot.
 
     Parameters
     ----------
@@ -60,31 +68,32 @@ def place_clip(
     fps : float
         Frames per second.
     hold : bool, default True
-        Whether the root is moved so that the feet in contact stand still.
+        Whether the feet in contact are held still, by the root and by what is left by each leg.
 
     Returns
     -------
     Placement
-        Path and height; without `hold` one height for the whole clip.
+        Path and height; without `hold` one height for the whole clip and no displaced feet.
 
     Notes
     -----
     The scale is the one at which feet in contact move least: ``s = -sum(v_foot . v_hip) / sum(|v_hip|^2)``
-    over contact frames. What is left is taken out of the root step by step and interpolated through flight,
-    and so is what keeps the standing sole off the ground.
+    over contact frames. The root takes the smooth share of what is left, by least squares over all feet; the
+    rest is taken by each foot alone, exactly.
     """
     scale = fit_scale(anchor, soles, contact, height, fps)
     fitted = scale is not None
     scale = leg_ratio if scale is None else scale
     shift = anchor * np.array([scale, leg_ratio, scale])
+    found = [find_sole(foot, contact[:, f], height, fps) for f, foot in enumerate(soles)]
     correction = 0.0
     if hold and soles:
-        steps = _slip_steps(soles, contact, shift, height, fps)
-        shift[1:, [0, 2]] -= np.cumsum(steps, axis=0)
-        correction = float(np.linalg.norm(steps, axis=1).sum())
-    heights = _lifts(soles, contact, shift[:, 1], ground)
-    shift[:, 1] += _smooth(heights[:, None], max(1, round(fps / 20)))[:, 0] if hold else np.median(heights)
-    return Placement(shift, float(scale), leg_ratio, fitted, correction)
+        steps = root_steps(found, shift, fps)
+        shift[:, HORIZONTAL] += steps
+        correction = float(np.linalg.norm(np.diff(steps, axis=0), axis=1).sum())
+    shift[:, 1] += _root_lift(found, shift[:, 1], ground, fps, hold)
+    feet = hold_feet(found, shift, ground, fps) if hold else np.zeros((len(shift), len(soles), 3))
+    return Placement(shift, feet, float(scale), leg_ratio, fitted, correction)
 
 
 def fit_scale(
@@ -112,11 +121,11 @@ def fit_scale(
     """
     if len(anchor) < 3 or not soles:
         return None
-    hip = sole_velocities(anchor[:, None, :], height, fps)[:, [0, 2]]
+    hip = sole_velocities(anchor[:, None, :], height, fps)[:, HORIZONTAL]
     against = along = 0.0
     for f, foot in enumerate(soles):
         mine = contact[:, f]
-        v = sole_velocities(foot, height, fps)[mine][:, [0, 2]]
+        v = sole_velocities(foot, height, fps)[mine][:, HORIZONTAL]
         against -= float((v * hip[mine]).sum())
         along += float((hip[mine] ** 2).sum())
     if along <= 0 or against <= 0:
@@ -126,47 +135,53 @@ def fit_scale(
     return scale if travel > _LEAST_TRAVEL * height else None
 
 
-def _slip_steps(
-    soles: Sequence[FloatArray], contact: BoolArray, shift: FloatArray, height: float, fps: float
-) -> FloatArray:
-    """Horizontal displacement of the standing soles from frame to frame, (T-1, 2), filled through flight."""
+def root_steps(soles: Sequence[Sole], shift: FloatArray, fps: float) -> FloatArray:
+    """Horizontal share of the root in holding the feet: smooth, by least squares over all of them.
+
+    Parameters
+    ----------
+    soles : sequence of Sole
+        One a foot.
+    shift : (T, 3) float
+        Translation of the body so far, metres.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    (T, 2) ndarray
+        Metres, zero in the first frame and everywhere without contact.
+    """
     T = len(shift)
-    total, count = np.zeros((T - 1, 2)), np.zeros(T - 1)
-    root = np.diff(shift, axis=0)[:, [0, 2]]
-    for f, foot in enumerate(soles):
-        both = contact[1:, f] & contact[:-1, f]
-        y = foot[..., 1]
-        low = (y <= y.min(axis=1, keepdims=True) + _SOLE * height).astype(np.float64)
-        share = low[1:] + low[:-1]
-        share /= share.sum(axis=1, keepdims=True)
-        slip = np.einsum("tk,tki->ti", share, np.diff(foot, axis=0))[:, [0, 2]] + root
-        total += np.where(both[:, None], slip, 0.0)
-        count += both
-    known = np.flatnonzero(count > 0)
-    if len(known) == 0:
-        return np.zeros((T - 1, 2))
-    mean = total[known] / count[known, None]
-    filled = np.column_stack([np.interp(np.arange(T - 1), known, mean[:, k]) for k in range(2)])
-    return _smooth(filled, round(fps / 60))
+    bend = second_differences(T)
+    span = max(fps / 30, 2.0)
+    # the last term keeps the root where no foot ever stands; it weighs nothing in a clip of any length
+    matrix = bend.T @ bend * (_ROOT_TIME * fps) ** 2 + sp.eye_array(T) * 1e-9
+    wanted = np.zeros((T, 2))
+    for sole in soles:
+        matrix = matrix + sole.windows.T @ sole.windows / span**2
+        wanted -= sole.windows.T @ sole.slip(shift) / span**2
+    if not wanted.any():
+        return wanted
+    steps = SparseCholesky(matrix).solve(wanted)
+    return steps - steps[0]
 
 
-def _smooth(x: FloatArray, reach: int) -> FloatArray:
-    """Triangular filter over 2 reach + 1 samples, edges repeated."""
-    kernel = np.r_[np.arange(1, reach + 1), reach + 1, np.arange(reach, 0, -1)].astype(np.float64)
-    kernel /= kernel.sum()
-    padded = np.pad(x, ((reach, reach), (0, 0)), mode="edge")
-    return np.column_stack([np.convolve(padded[:, k], kernel, mode="valid") for k in range(x.shape[1])])
-
-
-def _lifts(soles: Sequence[FloatArray], contact: BoolArray, y: FloatArray, ground: float) -> FloatArray:
-    """Lift that puts the lowest sole on the ground while a foot stands, interpolated through flight."""
-    frames = np.arange(len(y))
+def _root_lift(soles: Sequence[Sole], y: FloatArray, ground: float, fps: float, hold: bool) -> FloatArray:
+    """Lift of the root that brings standing soles near the ground; one for the whole clip without `hold`."""
+    T = len(y)
     if not soles:
-        return np.zeros(len(y))
-    lows = np.stack([foot[..., 1].min(axis=1) + y for foot in soles], axis=1)
+        return np.zeros(T)
+    gaps = np.stack([ground - sole.low - y for sole in soles], axis=1)
+    contact = np.stack([sole.contact for sole in soles], axis=1)
     standing = contact.any(axis=1)
     if not standing.any():
-        return np.full(len(y), ground - float(np.percentile(lows.min(axis=1), 5)))
-    # the lower of both soles, standing or about to land: a heel must not sink before its toe is in contact
-    low = lows.min(axis=1)[standing]
-    return np.interp(frames, frames[standing], ground - low)
+        return np.full(T, float(np.percentile(gaps.max(axis=1), 95)))
+    highest = gaps.max(axis=1)
+    middle = float(np.median(highest[standing]))
+    if not hold:
+        return np.full(T, middle)
+    bend = second_differences(T)
+    matrix = bend.T @ bend * (_ROOT_TIME * fps) ** 4 + sp.diags_array(contact.sum(axis=1) + 1e-9)
+    wanted = np.where(contact, gaps - middle, 0.0).sum(axis=1)
+    return middle + SparseCholesky(matrix).solve(wanted)

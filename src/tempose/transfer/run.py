@@ -23,6 +23,7 @@ from tempose.transfer.measures import (
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.placement import Placement, place_clip
 from tempose.transfer.result import TransferResult
+from tempose.transfer.standing import hold_standing
 from tempose.transfer.template import template_clip
 from tempose.typing import FloatArray, Progress, silent
 
@@ -144,8 +145,10 @@ def _place(job: Prepared, V: FloatArray, fps: float, contacts: bool) -> Placemen
     placement = place_clip(
         job.anchor_path, soles, job.feet.contact, ground, mesh.height, job.leg_ratio, fps, contacts
     )
+    standing = hold_standing(job.feet, job.solver, V, placement.feet)
     for block in _blocks(len(V)):
         V[block] += placement.shift[block, None].astype(np.float32)
+        standing.add(V[block], block)
         release(V)
     return placement
 
