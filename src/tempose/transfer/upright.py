@@ -14,9 +14,11 @@ from tempose.transfer.pairs import Pairs
 from tempose.typing import FloatArray
 
 MOST_LEAN = np.radians(60.0)
-"""A trunk that leans by more does not stand."""
+"""A body that leans by more does not stand."""
 _NEAR_AXIS = np.radians(30.0)
 _HIGH = (("head",), ("neck",), ("left_upper_arm", "right_upper_arm"), ("chest",))
+_HIPS = (("left_thigh", "right_thigh"), ("hips",))
+_LOW = (("left_foot", "right_foot"), ("left_shin", "right_shin"))
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ class Upright:
 
 
 def stand_up(mesh: Mesh, pairs: Pairs, roles: dict[str, str]) -> Upright:
-    """Turn a target so that its trunk points along Y, if it does not by far.
+    """Turn a target so that its body points along Y, if it does not by far.
 
     Parameters
     ----------
@@ -46,25 +48,25 @@ def stand_up(mesh: Mesh, pairs: Pairs, roles: dict[str, str]) -> Upright:
     Returns
     -------
     Upright
-        The axis of the target nearest to its trunk becomes Y. If the up axis was a guess it is noted as the
+        The axis of the target nearest to its body becomes Y. If the up axis was a guess it is noted as the
         file's, so that the result is written in the file's own axes, and a guessed unit is guessed again
         from the true height.
     """
-    trunk = _trunk(mesh, pairs, roles)
+    body = _upwards(mesh, pairs, roles)
     identity = np.eye(3)
-    if trunk is None or _angle(trunk, UP) < MOST_LEAN:
+    if body is None or _angle(body, UP) < MOST_LEAN:
         return Upright(mesh, identity)
     axis = np.zeros(3)
-    axis[np.abs(trunk).argmax()] = np.sign(trunk[np.abs(trunk).argmax()])
+    axis[np.abs(body).argmax()] = np.sign(body[np.abs(body).argmax()])
     name = "xyz"[int(np.abs(axis).argmax())]
     along = f"{'-' if axis.sum() < 0 else ''}{name.upper()}"
     if "up" in mesh.source.guessed and axis.sum() > 0:
         turn = to_inside(identity, name, 1.0).T
         found = _again(mesh, turn, name)
         return Upright(*found, f"the target stands along {along}: its file was taken to have {along} up")
-    direction = axis if _angle(trunk, axis) < _NEAR_AXIS else trunk
+    direction = axis if _angle(body, axis) < _NEAR_AXIS else body
     turn = to_matrix(shortest_rotation(direction, UP))
-    what = "is upside down" if _angle(trunk, -UP) < MOST_LEAN else "lies"
+    what = "is upside down" if _angle(body, -UP) < MOST_LEAN else "lies"
     note = f"the target {what}, its head along {along}: it was stood up, and the result stands"
     return Upright(mesh.with_vertices(mesh.vertices @ turn.T), turn, note)
 
@@ -99,8 +101,8 @@ def _again(mesh: Mesh, turn: FloatArray, up: str) -> tuple[Mesh, FloatArray]:
     return replace(mesh, vertices=mesh.vertices @ turn.T, source=replace(source, up=up, unit=unit)), turn
 
 
-def _trunk(mesh: Mesh, pairs: Pairs, roles: dict[str, str]) -> FloatArray | None:
-    """Point from the hips to the head, or between what there is of them, with unit length."""
+def _upwards(mesh: Mesh, pairs: Pairs, roles: dict[str, str]) -> FloatArray | None:
+    """Point along the body, from the feet by way of the hips to the head, with unit length."""
     places: dict[str, FloatArray] = {}
     names = np.array(pairs.source)
     for name, role in roles.items():
@@ -108,17 +110,20 @@ def _trunk(mesh: Mesh, pairs: Pairs, roles: dict[str, str]) -> FloatArray | None
             places[role] = pairs.joints[name]
         elif (names == name).any():
             places[role] = mesh.vertices[mesh.faces[pairs.target[names == name]]].mean(axis=(0, 1))
-    low = _middle(places, ("hips",)) if "hips" in places else _middle(places, ("left_thigh", "right_thigh"))
-    high = next((p for group in _HIGH if (p := _middle(places, group)) is not None), None)
-    if low is None or high is None:
-        return None
-    length = float(np.linalg.norm(high - low))
-    return (high - low) / length if length > 1e-6 * mesh.diagonal else None
+    hips, head, feet = (_middle(places, groups) for groups in (_HIPS, _HIGH, _LOW))
+    # legs count as much as the trunk: who bows down or kneels does not lie
+    parts = [_unit(b - a) for a, b in ((hips, head), (feet, hips)) if a is not None and b is not None]
+    body = sum(parts, np.zeros(3))
+    return _unit(body) if np.linalg.norm(body) > 0.1 else None
 
 
-def _middle(places: dict[str, FloatArray], roles: tuple[str, ...]) -> FloatArray | None:
-    found = [places[role] for role in roles if role in places]
-    return np.mean(found, axis=0) if found else None
+def _middle(places: dict[str, FloatArray], groups: tuple[tuple[str, ...], ...]) -> FloatArray | None:
+    found = next((group for group in groups if all(role in places for role in group)), ())
+    return np.mean([places[role] for role in found], axis=0) if found else None
+
+
+def _unit(x: FloatArray) -> FloatArray:
+    return x / max(float(np.linalg.norm(x)), 1e-300)
 
 
 def _angle(a: FloatArray, b: FloatArray) -> float:
