@@ -111,6 +111,8 @@ def _foot_groups(bones: Bones, target: BonePose) -> list[tuple[list[int], int]]:
         foot, toes = bones.find(side + "foot"), bones.find(side + "toes")
         if foot is not None:
             groups.append(([foot] if toes is None else [foot, toes], foot if toes is None else toes))
+        elif (shin := bones.find(side + "shin")) is not None:
+            groups.append(([shin], shin))  # a skeleton that ends at the ankles
     if groups or any(bones.roles):
         return groups
     leaves = sorted(set(range(len(bones.names))) - {int(p) for p in bones.parents})

@@ -84,8 +84,17 @@ def match(
     pairs.check(0, len(mesh.faces), source.skeleton.names)
     roles = {source.skeleton.names[j]: role for role, j in find_roles(source.skeleton, mapping).items()}
     standing = stand_up(mesh, pairs, roles)
-    notes = (*doubts, standing.note) if standing.note else doubts
-    return Matched(standing.mesh, turned_pairs(pairs, standing.turn), pairs, notes, facts)
+    notes = [*doubts, standing.note, _foot_note(set(roles.values()))]
+    kept = tuple(note for note in notes if note)
+    return Matched(standing.mesh, turned_pairs(pairs, standing.turn), pairs, kept, facts)
+
+
+def _foot_note(roles: set[str]) -> str:
+    if not roles or {"left_foot", "right_foot"} <= roles:
+        return ""
+    if {"left_shin", "right_shin"} <= roles:
+        return "the source's skeleton has no feet: its ankles are held instead, and the target's do not bend"
+    return "the source's skeleton has no feet or shins: nothing is held on the ground"
 
 
 def _check_bodies(source: SkeletonClip | MeshClip, mesh: Mesh) -> None:
