@@ -12,6 +12,7 @@ from tempose.cli.convert import convert
 from tempose.cli.data import data
 from tempose.cli.demo import demo
 from tempose.cli.info import info
+from tempose.cli.pairs import pairs
 from tempose.cli.render import render
 from tempose.cli.transfer import transfer
 
@@ -22,6 +23,7 @@ app = typer.Typer(
 )
 app.command()(demo)
 app.command()(transfer)
+app.command()(pairs)
 app.command()(info)
 app.command()(convert)
 app.command()(compare)

@@ -19,6 +19,7 @@ def transfer(  # numpydoc ignore=PR01
     target: given.Target,
     out: given.Out,
     pairs: given.PairsFile = None,
+    embed: given.Embed = False,
     source_rest: given.SourceRest = None,
     mapping: given.Mapping = None,
     contacts: given.Contacts = True,
@@ -46,6 +47,7 @@ def transfer(  # numpydoc ignore=PR01
     motion = load_motion(source, listed, up=source_up, unit=source_unit, fps=source_fps, clip=clip)
     goal = load_target(target, pairs, group, up=target_up, unit=target_unit)
     settings: dict[str, Any] = {"mapping": load_mapping(mapping), "volume": volume, "contacts": contacts}
+    settings["embed"] = embed
     settings |= load_rest(source_rest, motion)
     loaded = time.perf_counter()
     trimmed = _trimmed(motion, start, stop, step)

@@ -20,8 +20,11 @@ PairsFile = Annotated[
     typer.Option(
         metavar="FILE",
         help="What moves what: JSON or TOML pairs, .cons or .yml markers, MakeHuman .mhw weights; "
-        "without it, the skin weights in TARGET.",
+        "without it, the skin weights in TARGET, else a skeleton placed inside it.",
     ),
+]
+Embed = Annotated[
+    bool, typer.Option("--embed", help="Place a skeleton inside TARGET although it has skin weights.")
 ]
 SourceRest = Annotated[
     str | None,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
+from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
 from tempose.kinematics.roles import find_roles
 from tempose.transfer.from_mesh import prepare_mesh
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
@@ -31,6 +31,58 @@ class Matched:
     """What is doubtful."""
     facts: dict[str, Any] = field(default_factory=dict[str, Any])
     """What the report shall say about how the pairs were found."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Pairs, and how far they are to be trusted."""
+
+    pairs: Pairs
+    """In the axes of the target as it was given."""
+    warnings: tuple[str, ...] = ()
+    """What is doubtful."""
+    facts: dict[str, Any] = field(default_factory=dict[str, Any])
+    """``embedding``: penalty, confidence and reasons, where a skeleton was placed inside the target."""
+
+
+def find_pairs(
+    source: Skeleton,
+    target: Mesh | SkinnedMesh,
+    mapping: dict[str, str] | None = None,
+    embed: bool = False,
+) -> Found:
+    """Find which faces of a target belong to which joint, without a click.
+
+    Parameters
+    ----------
+    source : Skeleton
+        Skeleton that moves.
+    target : Mesh or SkinnedMesh
+        What shall move: with skin weights anything that shares joints with the source, without them a
+        human-like body in any axes, scale and heading.
+    mapping : dict of str to str, optional
+        Source joint to body role, where the names do not tell.
+    embed : bool, default False
+        Whether skin weights are left alone and a skeleton is placed inside the target.
+
+    Returns
+    -------
+    Found
+        Pairs of kind ``"joints"``, warnings and measures.
+
+    Raises
+    ------
+    ValueError
+        If no joints correspond, the source is no human's skeleton, or the target is clearly no human; the
+        message names the measure and how to go on.
+    """
+    if isinstance(target, SkinnedMesh) and not embed:
+        return Found(pairs_from_skin(source, target, mapping))
+    from tempose.transfer.embedded_pairs import embedding_doubts, embedding_facts, pairs_from_embedding
+
+    mesh = target.mesh if isinstance(target, SkinnedMesh) else target
+    pairs, embedding = pairs_from_embedding(source, mesh, mapping)
+    return Found(pairs, embedding_doubts(embedding), {"embedding": embedding_facts(embedding)})
 
 
 def match(
@@ -70,23 +122,16 @@ def match(
     if isinstance(source, MeshClip):
         pairs = _mesh_pairs(source, mesh, pairs)
         return Matched(mesh, pairs, pairs)
-    doubts: tuple[str, ...] = ()
-    facts: dict[str, Any] = {}
-    if pairs is None and isinstance(target, SkinnedMesh) and not embed:
-        pairs = pairs_from_skin(source.skeleton, target, mapping)
-    elif pairs is None:
-        from tempose.transfer.embedded_pairs import embedding_doubts, embedding_facts, pairs_from_embedding
-
-        pairs, embedding = pairs_from_embedding(source.skeleton, mesh, mapping)
-        doubts, facts = embedding_doubts(embedding), {"embedding": embedding_facts(embedding)}
+    found = Found(pairs) if pairs is not None else find_pairs(source.skeleton, target, mapping, embed)
+    pairs = found.pairs
     if pairs.kind != "joints":
         raise ValueError(f"pairs of kind {pairs.kind!r} need a mesh clip as source, got a skeleton")
     pairs.check(0, len(mesh.faces), source.skeleton.names)
     roles = {source.skeleton.names[j]: role for role, j in find_roles(source.skeleton, mapping).items()}
     standing = stand_up(mesh, pairs, roles)
-    notes = [*doubts, standing.note, _foot_note(set(roles.values()))]
+    notes = [*found.warnings, standing.note, _foot_note(set(roles.values()))]
     kept = tuple(note for note in notes if note)
-    return Matched(standing.mesh, turned_pairs(pairs, standing.turn), pairs, kept, facts)
+    return Matched(standing.mesh, turned_pairs(pairs, standing.turn), pairs, kept, found.facts)
 
 
 def _foot_note(roles: set[str]) -> str:
