@@ -1,5 +1,6 @@
 """Measures: how far, how stretched, how flipped, how much volume, how much skate."""
 
+from tempose.metrics.acceleration import AccelerationRatio, accelerations, foot_acceleration
 from tempose.metrics.contacts import detect_contacts, velocities
 from tempose.metrics.directions import DirectionError, direction_angles, limb_direction_errors
 from tempose.metrics.distortion import Ratios, area_ratios, edge_ratios
@@ -16,10 +17,12 @@ from tempose.metrics.volume import (
 )
 
 __all__ = [
+    "AccelerationRatio",
     "ClipErrors",
     "DirectionError",
     "Penetration",
     "Ratios",
+    "accelerations",
     "area_ratios",
     "compare",
     "component_volume_change",
@@ -30,6 +33,7 @@ __all__ = [
     "flipped_faces",
     "flipped_percent",
     "folded_percent",
+    "foot_acceleration",
     "ground_depths",
     "limb_direction_errors",
     "patch_round",

@@ -9,6 +9,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from tempose.metrics import detect_contacts
 from tempose.transfer.bones import Bones, split_role
+from tempose.transfer.contacts import steady_contacts
 from tempose.transfer.legs import Leg, bone_leg, mesh_leg
 from tempose.transfer.pose import BonePose
 from tempose.typing import BoolArray, FloatArray, IntArray
@@ -16,6 +17,7 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 _NEAR_GROUND = 0.06
 _FOOT_GAP = 0.06
 """Low pairs of a mesh nearer than this share of its height are one foot: left and right are further apart."""
+_STEP = 0.05
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,15 @@ class Feet:
     """Leg of the target above each foot; none where the target at rest was not given."""
     ankles: FloatArray | None = None
     """(T, f, 3) metres: the ankle of each source foot, or its ball where no ankle is known."""
+    held: BoolArray | None = None
+    """(T, f) frames in which each foot is held; those of `contact` if not given."""
+    levels: FloatArray | None = None
+    """(f,) metres by which the ground under each source foot is higher than under the lowest."""
+
+    @property
+    def standing(self) -> BoolArray:
+        """(T, f) frames in which each foot is held."""
+        return self.contact if self.held is None else self.held
 
 
 def bone_feet(
@@ -78,14 +89,37 @@ def bone_feet(
         return no_feet(len(motion.starts))
     balls = [motion.ends[:, ball] if ball == group[0] else motion.starts[:, ball] for group, ball, _ in found]
     trajectories = np.stack(balls, axis=1)
+    ankles = np.stack([motion.starts[:, group[0]] for group, _, _ in found], axis=1)
     return Feet(
         tuple(bones.roles[group[0]] or bones.names[group[0]] for group, _, _ in found),
         trajectories,
         tuple(mine for _, _, mine in found),
         detect_contacts(trajectories, height, fps),
         () if V is None else tuple(bone_leg(bones, group, target, owner, V) for group, _, _ in found),
-        np.stack([motion.starts[:, group[0]] for group, _, _ in found], axis=1),
+        ankles,
+        steady_contacts([trajectories, ankles], height, fps),
+        ground_levels(trajectories, height),
     )
+
+
+def ground_levels(balls: FloatArray, height: float) -> FloatArray:
+    """Find feet that stand on something: a box, a step, a table.
+
+    Parameters
+    ----------
+    balls : (T, f, 3) float
+        Trajectories of the source's feet, metres.
+    height : float
+        Height of the source, metres.
+
+    Returns
+    -------
+    (f,) ndarray
+        Metres above the lowest foot's ground; 0 within 5 % of the height, which is noise and thick soles.
+    """
+    low = np.percentile(balls[..., 1], 5, axis=0)
+    above = low - low.min(initial=np.inf)
+    return np.where(above > _STEP * height, above, 0.0)
 
 
 def no_feet(n_frames: int) -> Feet:
@@ -209,5 +243,13 @@ def mesh_feet(
     names = tuple(f"foot {i + 1}" for i in range(len(points)))
     every = np.concatenate(vertices)
     legs = tuple(mesh_leg(V_target, foot, np.setdiff1d(every, foot)) for foot in vertices)
-    contact = detect_contacts(trajectories, height, fps)
-    return Feet(names, trajectories, tuple(vertices), contact, legs, trajectories)
+    return Feet(
+        names,
+        trajectories,
+        tuple(vertices),
+        detect_contacts(trajectories, height, fps),
+        legs,
+        trajectories,
+        steady_contacts([trajectories], height, fps),
+        ground_levels(trajectories, height),
+    )

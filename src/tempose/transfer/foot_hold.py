@@ -37,5 +37,6 @@ def hold_feet(soles: Sequence[Sole], shift: FloatArray, ground: float, fps: floa
     paths = np.zeros((len(shift), len(soles), 3))
     for f, sole in enumerate(soles):
         paths[:, f, HORIZONTAL] = steady_path(sole.windows, -sole.slip(shift), FADE * fps)
-        paths[:, f, 1] = path_above(ground - sole.low - shift[:, 1], sole.contact, FADE * fps)
+        floor = ground + np.where(sole.contact, sole.level, 0.0)
+        paths[:, f, 1] = path_above(floor - sole.low - shift[:, 1], sole.contact, FADE * fps)
     return paths

@@ -48,6 +48,7 @@ def place_clip(
     leg_ratio: float,
     fps: float,
     hold: bool = True,
+    levels: FloatArray | None = None,
 ) -> Placement:
     """Find the translation of every frame and the displacement of every foot.
 
@@ -68,7 +69,9 @@ def place_clip(
     fps : float
         Frames per second.
     hold : bool, default True
-        Whether the feet in contact are held still, by the root and by what is left by each leg.
+        Whether the feet in contact are held still: by the root, and by each leg in what is left.
+    levels : (f,) float, optional
+        Metres by which the ground under each foot is higher than `ground`.
 
     Returns
     -------
@@ -85,7 +88,8 @@ def place_clip(
     fitted = scale is not None
     scale = leg_ratio if scale is None else scale
     shift = anchor * np.array([scale, leg_ratio, scale])
-    found = [find_sole(foot, contact[:, f], height, fps) for f, foot in enumerate(soles)]
+    levels = np.zeros(len(soles)) if levels is None else levels
+    found = [find_sole(foot, contact[:, f], height, fps, levels[f]) for f, foot in enumerate(soles)]
     correction = 0.0
     if hold and soles:
         steps = root_steps(found, shift, fps)
@@ -172,7 +176,7 @@ def _root_lift(soles: Sequence[Sole], y: FloatArray, ground: float, fps: float, 
     T = len(y)
     if not soles:
         return np.zeros(T)
-    gaps = np.stack([ground - sole.low - y for sole in soles], axis=1)
+    gaps = np.stack([ground + sole.level - sole.low - y for sole in soles], axis=1)
     contact = np.stack([sole.contact for sole in soles], axis=1)
     standing = contact.any(axis=1)
     if not standing.any():

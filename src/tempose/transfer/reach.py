@@ -6,7 +6,7 @@ import numpy as np
 
 from tempose.typing import FloatArray
 
-_FREE, _MOST = 1.03, 1.06
+_FREE, _MOST = 1.05, 1.08
 """Shares of its length to which a leg stretches freely, and which it never passes."""
 
 
@@ -25,8 +25,8 @@ def within_reach(hip: FloatArray, ankle: FloatArray, length: float, path: FloatA
     Returns
     -------
     (T, 3) ndarray
-        The displacement itself wherever the leg stays shorter than 1.03 of its length, or no longer than it
-        was; beyond, the foot is drawn back along the leg, smoothly, and the leg stays below 1.06.
+        The displacement itself wherever the leg stays shorter than 1.05 of its length, or no longer than it
+        was; beyond, the foot is drawn back along the leg, smoothly, and the leg stays below 1.08.
     """
     now, then = ankle - hip, ankle + path - hip
     was, wanted = np.linalg.norm(now, axis=1), np.linalg.norm(then, axis=1)

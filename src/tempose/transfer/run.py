@@ -7,23 +7,21 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
-from tempose.transfer.frames import BLOCK, gather, make_frames, release
+from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.matching import Matched, match, prepare
-from tempose.transfer.measures import (
-    SHORT_QUATERNION,
-    direction_measures,
-    distortion_measures,
-    foot_measures,
-    soft_faces,
-)
+from tempose.transfer.measuring import add_measures
 from tempose.transfer.pairs import Pairs
-from tempose.transfer.placement import Placement, place_clip
+from tempose.transfer.placing import (
+    Contacts,
+    Placed,
+    contact_facts,
+    contact_warnings,
+    place_frames,
+    with_contacts,
+)
 from tempose.transfer.result import TransferResult
-from tempose.transfer.standing import hold_standing
 from tempose.transfer.template import template_clip
 from tempose.typing import FloatArray, Progress, silent
 
@@ -48,7 +46,7 @@ def transfer_motion(
     source_rest: SkeletonClip | Mesh | None = None,
     rest_frame: int | None = None,
     volume: float = 0.0,
-    contacts: bool = True,
+    contacts: Contacts = True,
     measure: bool = True,
     scratch: str | os.PathLike[str] | None = None,
     progress: Progress = silent,
@@ -74,8 +72,10 @@ def transfer_motion(
         Frame of the reference pose, in `source_rest` or else in the source.
     volume : float, default 0
         Strength of the inner edges that hold the volume at bends.
-    contacts : bool, default True
-        Whether the root is moved so that feet in contact stand still.
+    contacts : bool, mapping or (T, f) bool, default True
+        Whether feet stand still, and on the ground, while they are in contact; or the contacts themselves, if
+        not those found in the source: ``{"left_foot": [[0, 10], ...]}``, intervals of the source's frames
+        [first, first after it], or one column a foot in the order of the report's ``contacts``.
     measure : bool, default True
         Whether the report holds measures; they cost about as much as the frames.
     scratch : path-like, optional
@@ -108,21 +108,23 @@ def transfer_motion(
         rest_frame=rest_frame,
         volume=volume,
     )
+    job = with_contacts(job, contacts, source.n_frames)
     clock.lap("set-up")
     V = _solve(job, progress, scratch)
     clock.lap("frames")
-    placement = _place(job, V, source.fps, contacts)
+    placed = _place(job, V, source.fps, contacts is not False)
     clip = MeshClip(V, mesh, source.fps, replace(mesh.source, fps=source.fps))
     release(V)
     clock.lap("placement")
     report: dict[str, Any] = {"warnings": [*matched.warnings, *job.warnings]}
     if measure:
         progress(len(V), len(V), "measures")
-        _add_measures(report, job, V, source.fps)
+        add_measures(report, job, V, source.fps)
         clock.lap("measures")
-    report |= _facts(job, matched, placement)
+    report |= _facts(job, matched, placed, source.fps)
+    report["warnings"] += contact_warnings(job, placed)
     report["seconds"] = clock.seconds | {"total": sum(clock.seconds.values())}
-    return TransferResult(clip, matched.listed, report, _picture(source, job))
+    return TransferResult(clip, matched.listed, report, _picture(source, job), job)
 
 
 def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | None) -> FloatArray:
@@ -138,44 +140,20 @@ def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | 
     return V
 
 
-def _place(job: Prepared, V: FloatArray, fps: float, contacts: bool) -> Placement:
-    mesh = job.solver.mesh
-    soles = [gather(V, mine) for mine in job.feet.vertices]
-    ground = float(mesh.vertices[:, 1].min())
-    placement = place_clip(
-        job.anchor_path, soles, job.feet.contact, ground, mesh.height, job.leg_ratio, fps, contacts
-    )
-    standing = hold_standing(job.feet, job.solver, V, placement.feet)
+def _place(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed:
+    placed = place_frames(job, V, fps, hold)
     for block in _blocks(len(V)):
-        V[block] += placement.shift[block, None].astype(np.float32)
-        standing.add(V[block], block)
+        placed.add(V[block], block)
         release(V)
-    return placement
+    return placed
 
 
 def _blocks(n_frames: int) -> list[slice]:
     return [slice(t, t + BLOCK) for t in range(0, n_frames, BLOCK)]
 
 
-def _add_measures(report: dict[str, Any], job: Prepared, V: FloatArray, fps: float) -> None:
-    mesh = job.solver.mesh
-    roles = job.bones.roles if job.bones else ()
-    soft = soft_faces(mesh.faces, job.owner, roles) if any(roles) else None
-    measures = distortion_measures(job.solver, V, job.rotations, soft)
-    if job.bones and job.motion and job.target:
-        measures |= direction_measures(job.bones, job.motion, job.target, job.solver, job.owner, V)
-    ground = float(mesh.vertices[:, 1].min())
-    measures |= foot_measures(job.feet, V, mesh.height, job.source_height, ground, fps)
-    if measures["quaternion_norm_min"] < SHORT_QUATERNION:
-        report["warnings"].append(
-            "neighbouring marks turn against each other (shortest quaternion "
-            f"{measures['quaternion_norm_min']:.2f}): look for a torn or collapsed place"
-        )
-    report |= measures
-
-
-def _facts(job: Prepared, matched: Matched, placement: Placement) -> dict[str, Any]:
-    pairs = matched.pairs
+def _facts(job: Prepared, matched: Matched, placed: Placed, fps: float) -> dict[str, Any]:
+    pairs, placement = matched.pairs, placed.placement
     return matched.facts | {
         "pairs": {"count": len(pairs), "kind": pairs.kind, "origin": pairs.origin},
         "reference": job.chosen,
@@ -185,6 +163,7 @@ def _facts(job: Prepared, matched: Matched, placement: Placement) -> dict[str, A
         "scale_vertical": placement.scale_vertical,
         "scale_fitted": placement.fitted,
         "root_correction_m": placement.correction,
+        **contact_facts(job, placed, fps),
     }
 
 

@@ -27,6 +27,8 @@ class Sole:
     """(c, 2) metres: horizontal travel of the lowest vertices over the same windows."""
     low: FloatArray
     """(T,) metres: height of the lowest vertex."""
+    level: float = 0.0
+    """Metres by which what it stands on is higher than the ground."""
 
     def slip(self, shift: FloatArray) -> FloatArray:
         """Travel of the sole when the foot is also shifted.
@@ -44,7 +46,7 @@ class Sole:
         return self.travel + self.windows @ shift[:, HORIZONTAL]
 
 
-def find_sole(foot: FloatArray, contact: BoolArray, height: float, fps: float) -> Sole:
+def find_sole(foot: FloatArray, contact: BoolArray, height: float, fps: float, level: float = 0.0) -> Sole:
     """Find what must be taken out of a foot so that its sole stands still.
 
     Parameters
@@ -57,6 +59,8 @@ def find_sole(foot: FloatArray, contact: BoolArray, height: float, fps: float) -
         Height of the target, metres.
     fps : float
         Frames per second.
+    level : float, default 0
+        Metres by which what it stands on is higher than the ground.
 
     Returns
     -------
@@ -77,7 +81,7 @@ def find_sole(foot: FloatArray, contact: BoolArray, height: float, fps: float) -
     share /= share.sum(axis=1, keepdims=True)
     flat = np.asarray(foot[..., HORIZONTAL], dtype=np.float64).reshape(T, -1)
     travel = np.einsum("ck,cki->ci", share, (windows @ flat).reshape(len(frames), k, 2))
-    return Sole(np.asarray(contact, dtype=bool), windows, travel, low)
+    return Sole(np.asarray(contact, dtype=bool), windows, travel, low, level)
 
 
 def _window_rows(T: int, fps: float, frames: Any) -> Any:
