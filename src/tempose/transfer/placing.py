@@ -10,6 +10,7 @@ import numpy as np
 
 from tempose.metrics import foot_acceleration
 from tempose.transfer.contacts import Intervals, given_contacts
+from tempose.transfer.feet import Feet
 from tempose.transfer.frames import gather
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.placement import Placement, place_clip
@@ -18,6 +19,9 @@ from tempose.typing import BoolArray, FloatArray
 
 Contacts = bool | Intervals | BoolArray
 """Whether feet are held; or when, a foot's name to its intervals or one column a foot."""
+
+_UNEVEN = 6e-4
+"""Share of the height, a millimetre: soles that differ by less at rest both stand."""
 
 
 @dataclass(frozen=True)
@@ -69,11 +73,18 @@ def place_frames(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed
     mesh, feet = job.solver.mesh, job.feet
     ground = float(mesh.vertices[:, 1].min())
     soles = [gather(V, mine) for mine in feet.vertices]
-    levels = None if feet.levels is None else job.leg_ratio * feet.levels
+    levels = _uneven(feet, mesh.vertices, ground)
+    levels += 0.0 if feet.levels is None else job.leg_ratio * feet.levels
     placement = place_clip(
         job.anchor_path, soles, feet.standing, ground, mesh.height, job.leg_ratio, fps, hold, levels
     )
     return Placed(placement, hold_standing(feet, job.solver, V, placement.feet), ground, hold)
+
+
+def _uneven(feet: Feet, V_rest: FloatArray, ground: float) -> FloatArray:
+    """By how much a sole that stands at rest lies higher than the other: rest shall give rest."""
+    lows = np.array([V_rest[foot, 1].min() for foot in feet.vertices]) - ground
+    return np.where(lows < _UNEVEN * np.ptp(V_rest[:, 1]), lows, 0.0)
 
 
 def with_contacts(job: Prepared, contacts: Contacts, n_frames: int) -> Prepared:
