@@ -89,16 +89,17 @@ def _faces_per_joint(motion: SkeletonClip, found: Pairs) -> dict[str, dict[str, 
 
 
 def _picture(mesh: Mesh, found: Pairs) -> Any:
+    import numpy as np
+
     bones = tempose.transfer.bone_segments(found)
-    return tempose.render.contact_sheet(
-        mesh,
-        1,
-        ("front", "back", "side"),
-        cell=420,
-        segments=bones[None] if len(bones) else None,
-        face_colors=tempose.transfer.mark_colors(found, len(mesh.faces)),
-        workers=1,
-    )
+    look: dict[str, Any] = {
+        "cell": 480,
+        "segments": bones[None] if len(bones) else None,
+        "face_colors": tempose.transfer.mark_colors(found, len(mesh.faces)),
+        "workers": 1,
+    }
+    views = [tempose.render.contact_sheet(mesh, 1, (view,), **look) for view in ("front", "back", "side")]
+    return np.concatenate(views, axis=1)
 
 
 def _tell(found: dict[str, Any], out: Path | None, preview: Path | None, json: bool) -> None:

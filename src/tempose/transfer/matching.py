@@ -135,11 +135,9 @@ def match(
 
 
 def _foot_note(roles: set[str]) -> str:
-    if not roles or {"left_foot", "right_foot"} <= roles:
-        return ""
-    if {"left_shin", "right_shin"} <= roles:
-        return "the source's skeleton has no feet: its ankles are held instead, and the target's do not bend"
-    return "the source's skeleton has no feet or shins: nothing is held on the ground"
+    ankles = {"left_shin", "right_shin"} <= roles and not {"left_foot", "right_foot"} & roles
+    said = "the source's skeleton has no feet: its ankles are held instead, and the target's do not bend"
+    return said if ankles else ""
 
 
 def _check_bodies(source: SkeletonClip | MeshClip, mesh: Mesh) -> None:
