@@ -1,0 +1,158 @@
+"""Joints at their usual places along trunk, arms and legs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose.embedding.cells import Cells
+from tempose.embedding.limbs import Limb, Limbs
+from tempose.embedding.search import Ends
+from tempose.typing import FloatArray
+
+# places as shares of the way from the head to the toes, between landmarks of the body itself;
+# medians over people with known joints
+_SHOULDER_ABOVE_PIT, _SHOULDER_TO_TIP = 0.022, 0.375
+_ELBOW_SHARE, _ELBOW_TO_TIP = 0.325, 0.238
+_WRIST_SHARE = 0.70
+_HIP_ABOVE_CROTCH, _HIP = 0.045, 0.458
+_ANKLE_TO_TOE = 0.108
+_KNEE_SHARE, _KNEE_TO_ANKLE = 0.445, 0.22
+_NECK_ABOVE_PIT, _HEAD_ABOVE_NECK = 0.085, 0.06
+_SPINE_SHARE = 0.16
+_FOOT_FROM = 0.03
+
+
+@dataclass(frozen=True)
+class Arm:
+    """Joints of one arm, (3,) each."""
+
+    upper_arm: FloatArray
+    forearm: FloatArray
+    hand: FloatArray
+    tip: FloatArray
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Joints of one leg, (3,) each."""
+
+    thigh: FloatArray
+    shin: FloatArray
+    foot: FloatArray
+    toes: FloatArray
+    tip: FloatArray
+
+
+@dataclass(frozen=True)
+class Trunk:
+    """Joints of the trunk, (3,) each."""
+
+    hips: FloatArray
+    spine: FloatArray
+    neck: FloatArray
+    head: FloatArray
+    tip: FloatArray
+
+
+def place_arm(cells: Cells, limb: Limb, size: float, tip: int) -> Arm:
+    """Place the joints of an arm.
+
+    Parameters
+    ----------
+    cells : Cells
+        The inside of a mesh.
+    limb : Limb
+        The arm from the armpit.
+    size : float
+        Way from the head to the feet.
+    tip : int
+        Cell at the finger tips.
+
+    Returns
+    -------
+    Arm
+        Shoulder, elbow, wrist and finger tip.
+    """
+    shoulder = 0.5 * (limb.start - _SHOULDER_ABOVE_PIT * size) + 0.5 * (limb.end - _SHOULDER_TO_TIP * size)
+    elbow = 0.5 * (limb.start + _ELBOW_SHARE * (limb.end - limb.start)) + 0.5 * (
+        limb.end - _ELBOW_TO_TIP * size
+    )
+    wrist = limb.start + _WRIST_SHARE * (limb.end - limb.start)
+    return Arm(
+        _before(limb, shoulder, 0.03 * size, 0.12 * size), limb.at(elbow), limb.at(wrist), cells.points[tip]
+    )
+
+
+def place_leg(cells: Cells, limb: Limb, size: float) -> Leg:
+    """Place the joints of a leg.
+
+    Parameters
+    ----------
+    cells : Cells
+        The inside of a mesh.
+    limb : Limb
+        The leg from the crotch.
+    size : float
+        Way from the head to the feet.
+
+    Returns
+    -------
+    Leg
+        Hip joint, knee, ankle, ball of the foot, tip of the toes.
+    """
+    ankle_level = size * (1 - _ANKLE_TO_TOE)
+    ankle = limb.at(ankle_level)
+    foot = cells.points[limb.region][_levels_of(cells, limb) > ankle_level - _FOOT_FROM * size]
+    tip = foot[np.linalg.norm(foot - ankle, axis=1).argmax()]
+    hip = 0.5 * (limb.start - _HIP_ABOVE_CROTCH * size) + 0.5 * _HIP * size
+    knee = 0.5 * (limb.start + _KNEE_SHARE * (ankle_level - limb.start)) + 0.5 * (
+        ankle_level - _KNEE_TO_ANKLE * size
+    )
+    return Leg(
+        _before(limb, hip, 0.03 * size, 0.12 * size),
+        limb.at(knee),
+        ankle,
+        tip + 0.36 * (ankle - tip),
+        tip,
+    )
+
+
+def place_trunk(cells: Cells, limbs: Limbs, ends: Ends, legs: tuple[Leg, Leg]) -> Trunk:
+    """Place the joints of the trunk.
+
+    Parameters
+    ----------
+    cells : Cells
+        The inside of a mesh.
+    limbs : Limbs
+        The parts of the body.
+    ends : Ends
+        Its ends.
+    legs : (Leg, Leg)
+        The legs, already placed.
+
+    Returns
+    -------
+    Trunk
+        Hips, spine, neck, head and its top.
+    """
+    size = ends.size
+    pit = (limbs.arms[0].start + limbs.arms[1].start) / 2
+    neck_level = pit - _NECK_ABOVE_PIT * size
+    hips = (legs[0].thigh + legs[1].thigh) / 2
+    neck = limbs.trunk.at(neck_level)
+    head = limbs.trunk.at(neck_level - _HEAD_ABOVE_NECK * size)
+    spine = hips + _SPINE_SHARE * (neck - hips)
+    return Trunk(hips, spine, neck, head, cells.points[ends.cells[0]])
+
+
+def _levels_of(cells: Cells, limb: Limb) -> FloatArray:
+    return limb.way[limb.region]
+
+
+def _before(limb: Limb, level: float, near: float, far: float) -> FloatArray:
+    """Continue the middle line of a limb backwards from where it is a limb of its own."""
+    here, there = limb.at(limb.start + near), limb.at(limb.start + far)
+    return here + (here - there) * (limb.start + near - level) / (far - near)
