@@ -2,9 +2,32 @@
 
 After de Aguiar, Zayer, Theobalt, Seidel, Magnor, "A Simple Framework for Natural Animation of Digitized
 Models", SIBGRAPI 2007. The files, in the order in which data flows: bones, pairs, marks; reference,
-alignment, signs; links, fields, glue; placement, measures.
+alignment, signs; links, fields, glue; placement, measures. Tools for placing pairs by hand stand in
+`tempose.transfer.correspondence`.
 """
 
+from tempose.transfer.correspondence import (
+    Alignment,
+    Candidate,
+    Finding,
+    Mirrored,
+    PartnerFinder,
+    Preview,
+    Ring,
+    Sections,
+    Symmetry,
+    add_pairs,
+    align_meshes,
+    align_points,
+    check_coverage,
+    complete_ring,
+    find_symmetry,
+    joint_pairs,
+    mirror_pairs,
+    preview_pairs,
+    select_pairs,
+    suggest_partner,
+)
 from tempose.transfer.matching import Found, Matched, find_pairs, match
 from tempose.transfer.motion_transfer import Anchor, MotionTransfer
 from tempose.transfer.pairs import Pairs
@@ -18,21 +41,41 @@ from tempose.transfer.skin_pairs import pairs_from_skin
 from tempose.transfer.template import template_clip
 
 __all__ = [
+    "Alignment",
     "Anchor",
+    "Candidate",
+    "Finding",
     "Found",
     "Matched",
+    "Mirrored",
     "MotionTransfer",
     "Pairs",
+    "PartnerFinder",
+    "Preview",
+    "Ring",
+    "Sections",
+    "Symmetry",
     "TransferResult",
+    "add_pairs",
+    "align_meshes",
+    "align_points",
     "bone_segments",
+    "check_coverage",
+    "complete_ring",
     "consistent_signs",
     "find_pairs",
+    "find_symmetry",
+    "joint_pairs",
     "load_pairs",
     "mark_colors",
     "match",
+    "mirror_pairs",
     "pairs_from_skin",
+    "preview_pairs",
     "save_pairs",
+    "select_pairs",
     "skeleton_mesh",
+    "suggest_partner",
     "template_clip",
     "transfer_motion",
 ]
