@@ -40,6 +40,8 @@ class Feet:
     """(T, f) frames in which each foot is held; those of `contact` if not given."""
     levels: FloatArray | None = None
     """(f,) metres by which the ground under each source foot is higher than under the lowest."""
+    ground: float | None = None
+    """Height of a plane under the target that nothing sinks into, metres; None for no such plane."""
 
     @property
     def standing(self) -> BoolArray:

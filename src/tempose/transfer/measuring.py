@@ -35,7 +35,7 @@ def add_measures(report: dict[str, Any], job: Prepared, V: FloatArray, fps: floa
     measures = distortion_measures(job.solver, V, job.rotations, soft)
     if job.bones and job.motion and job.target:
         measures |= direction_measures(job.bones, job.motion, job.target, job.solver, job.owner, V)
-    ground = float(mesh.vertices[:, 1].min())
+    ground = float(mesh.vertices[:, 1].min()) if job.feet.ground is None else job.feet.ground
     measures |= foot_measures(job.feet, V, mesh.height, job.source_height, ground, fps)
     if measures["quaternion_norm_min"] < SHORT_QUATERNION:
         report["warnings"].append(

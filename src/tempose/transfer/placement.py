@@ -10,7 +10,8 @@ import scipy.sparse as sp
 
 from tempose.linalg import SparseCholesky
 from tempose.metrics import sole_velocities
-from tempose.transfer.foot_hold import hold_feet
+from tempose.transfer.foot_hold import FADE, hold_feet
+from tempose.transfer.ground_plane import lift_above
 from tempose.transfer.soles import HORIZONTAL, Sole, find_sole
 from tempose.transfer.steady_path import second_differences
 from tempose.typing import BoolArray, FloatArray
@@ -49,6 +50,7 @@ def place_clip(
     fps: float,
     hold: bool = True,
     levels: FloatArray | None = None,
+    trunk: FloatArray | None = None,
 ) -> Placement:
     """Find the translation of every frame and the displacement of every foot.
 
@@ -72,6 +74,8 @@ def place_clip(
         Whether the feet in contact are held still: by the root, and by each leg in what is left.
     levels : (f,) float, optional
         Metres by which the ground under each foot is higher than `ground`.
+    trunk : (T,) float, optional
+        Height of the lowest vertex that the root alone keeps above the ground, metres.
 
     Returns
     -------
@@ -96,6 +100,8 @@ def place_clip(
         shift[:, HORIZONTAL] += steps
         correction = float(np.linalg.norm(np.diff(steps, axis=0), axis=1).sum())
     shift[:, 1] += _root_lift(found, shift[:, 1], ground, fps, hold)
+    if trunk is not None:
+        shift[:, 1] += lift_above(trunk + shift[:, 1], ground, FADE * fps)
     feet = hold_feet(found, shift, ground, fps) if hold else np.zeros((len(shift), len(soles), 3))
     return Placement(shift, feet, float(scale), leg_ratio, fitted, correction)
 

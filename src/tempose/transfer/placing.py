@@ -11,11 +11,14 @@ import numpy as np
 from tempose.metrics import foot_acceleration
 from tempose.transfer.contacts import Intervals, given_contacts
 from tempose.transfer.feet import Feet
+from tempose.transfer.foot_hold import FADE
 from tempose.transfer.frames import gather
 from tempose.transfer.from_skeleton import Prepared
+from tempose.transfer.ground_plane import find_arms, lift_above, lowest
+from tempose.transfer.legs import Leg
 from tempose.transfer.placement import Placement, place_clip
 from tempose.transfer.standing import Standing, hold_standing
-from tempose.typing import BoolArray, FloatArray
+from tempose.typing import BoolArray, FloatArray, IntArray
 
 Contacts = bool | Intervals | BoolArray
 """Whether feet are held; or when, a foot's name to its intervals or one column a foot."""
@@ -36,8 +39,12 @@ class Placed:
     """Height of the ground, metres."""
     held: bool
     """Whether feet are held at all."""
+    solid: bool
+    """Whether nothing may sink into the ground."""
+    pressed: float = 0.0
+    """Metres by which the deepest vertex was pressed flat on the ground."""
 
-    def add(self, V: FloatArray, frames: slice) -> None:
+    def add(self, V: FloatArray, frames: slice) -> float:
         """Put some frames in their places.
 
         Parameters
@@ -46,9 +53,19 @@ class Placed:
             Those frames as the solver left them; changed in place.
         frames : slice
             Which ones they are.
+
+        Returns
+        -------
+        float
+            Metres by which the deepest vertex had to be pressed flat on the ground.
         """
         V += self.placement.shift[frames, None].astype(V.dtype)
         self.standing.add(V, frames)
+        if not self.solid:
+            return 0.0
+        depth = self.ground - float(V[..., 1].min(initial=np.inf))
+        np.maximum(V[..., 1], self.ground, out=V[..., 1])
+        return max(depth, 0.0)
 
 
 def place_frames(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed:
@@ -63,7 +80,8 @@ def place_frames(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed
     fps : float
         Frames per second.
     hold : bool
-        Whether feet are held while they stand.
+        Whether feet are held while they stand: on `Feet.ground`, else at the height of the lowest vertex at
+        rest.
 
     Returns
     -------
@@ -71,14 +89,37 @@ def place_frames(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed
         Paths.
     """
     mesh, feet = job.solver.mesh, job.feet
-    ground = float(mesh.vertices[:, 1].min())
+    rest, solid = float(mesh.vertices[:, 1].min()), feet.ground is not None
+    ground = rest if feet.ground is None else feet.ground
+    arms = _arms(job) if solid and hold else ()
     soles = [gather(V, mine) for mine in feet.vertices]
-    levels = _uneven(feet, mesh.vertices, ground)
+    levels = _uneven(feet, mesh.vertices, rest)
     levels += 0.0 if feet.levels is None else job.leg_ratio * feet.levels
+    trunk = lowest(V, _trunk(len(mesh.vertices), (*feet.legs, *arms), hold)) if solid else None
     placement = place_clip(
-        job.anchor_path, soles, feet.standing, ground, mesh.height, job.leg_ratio, fps, hold, levels
+        job.anchor_path, soles, feet.standing, ground, mesh.height, job.leg_ratio, fps, hold, levels, trunk
     )
-    return Placed(placement, hold_standing(feet, job.solver, V, placement.feet), ground, hold)
+    paths = placement.feet
+    for arm in arms:
+        lift = np.zeros((len(V), 1, 3))
+        lift[:, 0, 1] = lift_above(lowest(V, arm.foot) + placement.shift[:, 1], ground, FADE * fps)
+        paths = np.concatenate([paths, lift], axis=1)
+    standing = hold_standing((*feet.legs, *arms), job.solver, V, paths)
+    return Placed(placement, standing, ground, hold, solid)
+
+
+def _arms(job: Prepared) -> tuple[Leg, ...]:
+    if job.bones is None or job.target is None:
+        return ()
+    return find_arms(job.bones, job.target, job.owner, job.solver.mesh.vertices)
+
+
+def _trunk(n: int, limbs: tuple[Leg, ...], hold: bool) -> IntArray:
+    """Vertices that the root alone keeps above the ground; all of them where no foot is displaced."""
+    free = np.zeros(n, dtype=bool)
+    for limb in limbs if hold else ():
+        free[limb.foot] = free[limb.limb] = True
+    return np.arange(n) if free.all() else np.flatnonzero(~free)
 
 
 def _uneven(feet: Feet, V_rest: FloatArray, ground: float) -> FloatArray:
@@ -87,8 +128,8 @@ def _uneven(feet: Feet, V_rest: FloatArray, ground: float) -> FloatArray:
     return np.where(lows < _UNEVEN * np.ptp(V_rest[:, 1]), lows, 0.0)
 
 
-def with_contacts(job: Prepared, contacts: Contacts, n_frames: int) -> Prepared:
-    """Take the contacts that the user states instead of those found in the source.
+def with_contacts(job: Prepared, contacts: Contacts, n_frames: int, ground: float | None = None) -> Prepared:
+    """Take contacts and ground that the user states instead of those found.
 
     Parameters
     ----------
@@ -98,6 +139,8 @@ def with_contacts(job: Prepared, contacts: Contacts, n_frames: int) -> Prepared:
         What the user gave; a bool leaves those that were found.
     n_frames : int
         Frames of the source.
+    ground : float, optional
+        Height of a plane under the target, metres.
 
     Returns
     -------
@@ -107,8 +150,12 @@ def with_contacts(job: Prepared, contacts: Contacts, n_frames: int) -> Prepared:
     Raises
     ------
     ValueError
-        See `given_contacts`.
+        If `ground` is not finite; else see `given_contacts`.
     """
+    if ground is not None:
+        if not np.isfinite(ground):
+            raise ValueError(f"ground must be a height in metres, got {ground}")
+        job = replace(job, feet=replace(job.feet, ground=float(ground)))
     if not isinstance(contacts, (Mapping, np.ndarray)):
         return job
     mask = given_contacts(contacts, job.feet.names, n_frames, job.first_frame)
@@ -132,17 +179,32 @@ def contact_facts(job: Prepared, placed: Placed, fps: float) -> dict[str, Any]:
     dict
         ``contacts``: a dict a foot, see `Standing.facts`, in frames of the source;
         ``foot_acceleration``: of the target's ankles over that of the source's times the ratio of leg
-        lengths, ``rms`` and ``p99``; None where there is nothing to compare.
+        lengths, ``rms`` and ``p99``; None where there is nothing to compare; ``ground``: its height, by how
+        much hands were lifted and what was deeper pressed flat; None without a plane.
     """
     feet, standing = job.feet, placed.standing
     held = feet.standing if placed.held else np.zeros_like(feet.standing)
     ratio = None
     if feet.names and feet.legs and feet.ankles is not None:
-        ankles = standing.ankles + placed.placement.shift[:, None]
+        ankles = standing.ankles[:, : len(feet.names)] + placed.placement.shift[:, None]
         ratio = foot_acceleration(ankles, feet.ankles, job.leg_ratio, fps)
     return {
         "contacts": {name: standing.facts(held, f, job.first_frame) for f, name in enumerate(feet.names)},
+        **_ground_facts(placed, len(feet.names)),
         "foot_acceleration": None if ratio is None else {"rms": ratio.rms, "p99": ratio.p99},
+    }
+
+
+def _ground_facts(placed: Placed, n_feet: int) -> dict[str, Any]:
+    if not placed.solid:
+        return {"ground": None}
+    hands = placed.standing.paths[:, n_feet:, 1]
+    return {
+        "ground": {
+            "height": placed.ground,
+            "hands_lifted_cm": float(100 * hands.max(initial=0.0)),
+            "pressed_cm": 100 * placed.pressed,
+        }
     }
 
 

@@ -47,6 +47,7 @@ def transfer_motion(
     rest_frame: int | None = None,
     volume: float = 0.0,
     contacts: Contacts = True,
+    ground: float | None = None,
     measure: bool = True,
     scratch: str | os.PathLike[str] | None = None,
     progress: Progress = silent,
@@ -76,6 +77,9 @@ def transfer_motion(
         Whether feet stand still, and on the ground, while they are in contact; or the contacts themselves, if
         not those found in the source: ``{"left_foot": [[0, 10], ...]}``, intervals of the source's frames
         [first, first after it], or one column a foot in the order of the report's ``contacts``.
+    ground : float, optional
+        Height of a plane on which feet stand and into which nothing sinks, metres; without it feet stand at
+        the height of the target's lowest vertex, and only feet are kept from sinking.
     measure : bool, default True
         Whether the report holds measures; they cost about as much as the frames.
     scratch : path-like, optional
@@ -108,7 +112,7 @@ def transfer_motion(
         rest_frame=rest_frame,
         volume=volume,
     )
-    job = with_contacts(job, contacts, source.n_frames)
+    job = with_contacts(job, contacts, source.n_frames, ground)
     clock.lap("set-up")
     V = _solve(job, progress, scratch)
     clock.lap("frames")
@@ -141,11 +145,11 @@ def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | 
 
 
 def _place(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed:
-    placed = place_frames(job, V, fps, hold)
+    placed, pressed = place_frames(job, V, fps, hold), 0.0
     for block in _blocks(len(V)):
-        placed.add(V[block], block)
+        pressed = max(pressed, placed.add(V[block], block))
         release(V)
-    return placed
+    return replace(placed, pressed=pressed)
 
 
 def _blocks(n_frames: int) -> list[slice]:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from tempose.transfer.contacts import intervals
-from tempose.transfer.feet import Feet
 from tempose.transfer.frames import gather
 from tempose.transfer.leg_spread import LegSpread, spread_legs
+from tempose.transfer.legs import Leg
 from tempose.transfer.motion_transfer import MotionTransfer
 from tempose.transfer.reach import within_reach
 from tempose.typing import BoolArray, FloatArray, IntArray
@@ -78,13 +78,15 @@ class Standing:
         }
 
 
-def hold_standing(feet: Feet, solver: MotionTransfer, V: FloatArray, paths: FloatArray) -> Standing:
-    """Limit the displacements of the feet to what legs reach and spread them.
+def hold_standing(
+    legs: tuple[Leg, ...], solver: MotionTransfer, V: FloatArray, paths: FloatArray
+) -> Standing:
+    """Limit the displacements of feet to what their legs reach and spread them.
 
     Parameters
     ----------
-    feet : Feet
-        Feet of source and target.
+    legs : tuple of Leg
+        One for each of the first of the f paths, or none.
     solver : MotionTransfer
         The target.
     V : (T, n, 3) float
@@ -99,7 +101,7 @@ def hold_standing(feet: Feet, solver: MotionTransfer, V: FloatArray, paths: Floa
     """
     limited = np.array(paths, dtype=np.float64)
     stretch, ankles = np.full(paths.shape[:2], np.nan), np.zeros(paths.shape)
-    for f, leg in enumerate(feet.legs):
+    for f, leg in enumerate(legs):
         ankle = _point(V, leg.ankle)
         if leg.hip is not None and np.isfinite(leg.length):
             hip = _point(V, leg.hip)
@@ -107,7 +109,7 @@ def hold_standing(feet: Feet, solver: MotionTransfer, V: FloatArray, paths: Floa
             stretch[:, f] = np.linalg.norm(ankle + limited[:, f] - hip, axis=1) / leg.length
         ankles[:, f] = ankle + limited[:, f]
     missing = np.linalg.norm(limited - paths, axis=-1)
-    legs = feet.legs if np.abs(limited).max(initial=0.0) > 0 else ()
+    legs = legs if np.abs(limited).max(initial=0.0) > 0 else ()
     mesh = solver.mesh
     spread = spread_legs(mesh.vertices, mesh.faces, legs, solver.links)
     return Standing(limited, missing, stretch, ankles, spread)
