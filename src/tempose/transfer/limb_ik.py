@@ -126,7 +126,9 @@ def bend_axis(
     return axis / np.linalg.norm(axis)
 
 
-def reach(limb: Limb, Q: FloatArray, shift: FloatArray, *, follow: bool = False) -> FloatArray:
+def reach(
+    limb: Limb, Q: FloatArray, shift: FloatArray, *, follow: bool = False, beyond: FloatArray | None = None
+) -> FloatArray:
     """Turn a limb so that its end moves by a displacement.
 
     Parameters
@@ -139,6 +141,8 @@ def reach(limb: Limb, Q: FloatArray, shift: FloatArray, *, follow: bool = False)
         Where the end shall go from where these rotations put it, metres; the first joint stays.
     follow : bool, default False
         Whether hand or foot turn with the lower bone; otherwise they keep their rotation in the world.
+    beyond : (..., 3) float, optional
+        From the end to a point that moves in its stead, as it is now, metres; for one that follows.
 
     Returns
     -------
@@ -146,7 +150,7 @@ def reach(limb: Limb, Q: FloatArray, shift: FloatArray, *, follow: bool = False)
         Rotations; those of other bones are unchanged. A frame without shift keeps its own to rounding.
     """
     upper = rotate(Q[..., limb.upper, :], limb.second - limb.first)
-    lower = rotate(Q[..., limb.lower, :], limb.end - limb.second)
+    lower = rotate(Q[..., limb.lower, :], limb.end - limb.second) + (0.0 if beyond is None else beyond)
     hinge = rotate(Q[..., limb.upper, :], limb.hinge)
     turn_upper, turn_lower = two_bone_turns(upper, lower, upper + lower + shift, hinge)
     out = np.array(Q, dtype=np.float64)
