@@ -10,6 +10,7 @@ from tempose.cli import transfer_options as given
 from tempose.cli.console import note, progress_bar, show_json, show_table, writing
 from tempose.cli.options import Group, Json, check_out
 from tempose.cli.report import make_report, write_report
+from tempose.cli.transfer_contacts import load_contacts, parse_ground
 from tempose.cli.transfer_frames import releasing, room_for_frames
 from tempose.cli.transfer_inputs import load_mapping, load_motion, load_pairs, load_rest, load_target
 
@@ -23,6 +24,8 @@ def transfer(  # numpydoc ignore=PR01
     source_rest: given.SourceRest = None,
     mapping: given.Mapping = None,
     contacts: given.Contacts = True,
+    contact_frames: given.ContactFrames = None,
+    ground: given.Ground = None,
     volume: given.Volume = 0.0,
     start: given.Start = 0,
     stop: given.Stop = None,
@@ -40,13 +43,14 @@ def transfer(  # numpydoc ignore=PR01
 ) -> None:
     """Move a still mesh as a motion-capture clip, or another mesh, moves."""
     began = time.perf_counter()
-    apart = ("source", "target", "out", "report", "json", "began")
+    apart = ("source", "target", "out", "report", "json", "began", "apart")
     options = {name: value for name, value in locals().items() if name not in apart}
     check_out(out)
     listed = load_pairs(pairs)
     motion = load_motion(source, listed, up=source_up, unit=source_unit, fps=source_fps, clip=clip)
     goal = load_target(target, pairs, group, up=target_up, unit=target_unit)
-    settings: dict[str, Any] = {"mapping": load_mapping(mapping), "volume": volume, "contacts": contacts}
+    settings: dict[str, Any] = {"mapping": load_mapping(mapping), "volume": volume}
+    settings |= {"contacts": load_contacts(contact_frames, contacts), "ground": parse_ground(ground)}
     settings["embed"] = embed
     settings |= load_rest(source_rest, motion)
     loaded = time.perf_counter()

@@ -39,6 +39,17 @@ Mapping = Annotated[
 Contacts = Annotated[
     bool, typer.Option("--contacts/--no-contacts", help="Hold feet still while they touch the ground.")
 ]
+ContactFrames = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="JSON: foot to its contacts [first frame, first after it], instead of found ones.",
+    ),
+]
+Ground = Annotated[
+    str | None,
+    typer.Option(metavar="HEIGHT|none", help="Plane, in metres, to stand on; nothing sinks into it."),
+]
 Volume = Annotated[
     float, typer.Option(metavar="W", min=0, help="Hold the volume at bends; 1 holds most of it.")
 ]
