@@ -6,6 +6,9 @@ alignment, signs; links, fields, glue; placement, measures. Tools for placing pa
 `tempose.transfer.correspondence`.
 """
 
+from tempose.transfer.adjustments.adjustment import Adjustment
+from tempose.transfer.adjustments.files import load_adjustments, save_adjustments
+from tempose.transfer.adjustments.on_result import adjust
 from tempose.transfer.correspondence import (
     Alignment,
     Candidate,
@@ -41,6 +44,7 @@ from tempose.transfer.skin_pairs import pairs_from_skin
 from tempose.transfer.template import template_clip
 
 __all__ = [
+    "Adjustment",
     "Alignment",
     "Anchor",
     "Candidate",
@@ -57,6 +61,7 @@ __all__ = [
     "Symmetry",
     "TransferResult",
     "add_pairs",
+    "adjust",
     "align_meshes",
     "align_points",
     "bone_segments",
@@ -66,12 +71,14 @@ __all__ = [
     "find_pairs",
     "find_symmetry",
     "joint_pairs",
+    "load_adjustments",
     "load_pairs",
     "mark_colors",
     "match",
     "mirror_pairs",
     "pairs_from_skin",
     "preview_pairs",
+    "save_adjustments",
     "save_pairs",
     "select_pairs",
     "skeleton_mesh",

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
+from tempose.transfer.adjustments.adjustment import Adjustment
+from tempose.transfer.adjustments.on_result import adjust
 from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.matching import Matched, match, prepare
@@ -49,6 +52,7 @@ def transfer_motion(
     contacts: Contacts = True,
     ground: float | None = None,
     measure: bool = True,
+    adjustments: Sequence[Adjustment] = (),
     scratch: str | os.PathLike[str] | None = None,
     progress: Progress = silent,
 ) -> TransferResult:
@@ -82,6 +86,8 @@ def transfer_motion(
         the height of the target's lowest vertex, and only feet are kept from sinking.
     measure : bool, default True
         Whether the report holds measures; they cost about as much as the frames.
+    adjustments : sequence of Adjustment, optional
+        Key-framed changes layered on the result (`adjust`), which then keeps the frames without them too.
     scratch : path-like, optional
         Folder for the frames, when they are too many for memory: the clip's vertices are then a memory map
         of a new file in it, which is yours to delete.
@@ -121,14 +127,15 @@ def transfer_motion(
     release(V)
     clock.lap("placement")
     report: dict[str, Any] = {"warnings": [*matched.warnings, *job.warnings]}
-    if measure:
+    if measure and not adjustments:
         progress(len(V), len(V), "measures")
         add_measures(report, job, V, source.fps)
         clock.lap("measures")
     report |= _facts(job, matched, placed, source.fps)
     report["warnings"] += contact_warnings(job, placed)
     report["seconds"] = clock.seconds | {"total": sum(clock.seconds.values())}
-    return TransferResult(clip, matched.listed, report, _picture(source, job), job)
+    result = TransferResult(clip, matched.listed, report, _picture(source, job), job)
+    return adjust(result, adjustments, measure=measure, scratch=scratch, progress=progress)
 
 
 def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | None) -> FloatArray:

@@ -72,7 +72,7 @@ def adjust(
         add_measures(report, job, V, clip.fps)
         seconds["measures"] = seconds.get("measures", 0.0) + time.perf_counter() - began
     report["adjustments"] = found
-    report["warnings"] += [_miss(entry) for entry in found["unmet"]]
+    report["warnings"] = list(dict.fromkeys([*report["warnings"], *map(_miss, found["unmet"])]))
     seconds["total"] = sum(s for name, s in seconds.items() if name != "total")
     report["seconds"] = seconds
     moved = replace(clip, vertices=V)
