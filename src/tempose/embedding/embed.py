@@ -3,60 +3,176 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
 
 from tempose.clips import Mesh, SkinnedMesh
-from tempose.embedding.cells import body_cells
+from tempose.embedding.cells import Cells, body_cells
+from tempose.embedding.doubt import doubts, whole_penalty
 from tempose.embedding.embedding import Embedding
 from tempose.embedding.extremities import find_extremities
-from tempose.embedding.facing import body_frame, nearest_axis
+from tempose.embedding.facing import axis_vector, body_frame, find_side, nearest_axis
+from tempose.embedding.fallback import average_body
 from tempose.embedding.heat import heat_weights
-from tempose.embedding.human import NAMES
+from tempose.embedding.human import NAMES, SIDES
 from tempose.embedding.limbs import cut_limbs
-from tempose.embedding.place import place_arm, place_leg, place_trunk
-from tempose.embedding.search import choose_ends
+from tempose.embedding.place import Arm, Leg, Trunk, place_arm, place_leg, place_toes, place_trunk
+from tempose.embedding.search import Ends, choose_ends
 from tempose.embedding.solid import make_solid
 from tempose.typing import FloatArray, Progress, silent
 
+_TILTED = np.cos(np.radians(40.0))
+
 
 def embed_skeleton(mesh: Mesh, *, up: str | None = None, progress: Progress = silent) -> Embedding:
-    """Place a human skeleton of 18 joints inside a mesh."""
-    t0 = time.perf_counter()
-    solid = make_solid(mesh.vertices, mesh.faces)
-    cells = body_cells(solid)
-    ends = choose_ends(cells, find_extremities(cells))
-    if ends is None:
-        raise ValueError("no human shape")
-    limbs = cut_limbs(cells, ends)
-    arms = tuple(place_arm(cells, limbs.arms[i], ends.size, int(ends.cells[1 + i])) for i in range(2))
-    legs = tuple(place_leg(cells, limbs.legs[i], ends.size) for i in range(2))
-    trunk = place_trunk(cells, limbs, ends, legs)
-    frame, swap_arms, swap_legs, clear = body_frame(trunk, arms, legs)
-    if swap_arms:
-        arms = arms[::-1]
-    if swap_legs:
-        legs = legs[::-1]
-    at: dict[str, FloatArray] = {name: getattr(trunk, name) for name in ("hips", "spine", "neck", "head")}
-    ends_at = {"head": trunk.tip}
-    for side, arm, leg in zip(("left", "right"), arms, legs):
-        at |= {f"{side}_{name}": getattr(arm, name) for name in ("upper_arm", "forearm", "hand")}
-        at |= {f"{side}_{name}": getattr(leg, name) for name in ("thigh", "shin", "foot", "toes")}
-        ends_at |= {f"{side}_hand": arm.tip, f"{side}_toes": leg.tip}
-    return Embedding(
-        np.array([at[name] for name in NAMES]),
-        ends_at,
-        ends.penalty,
-        frame,
-        nearest_axis(frame[1]),
-        (),
-        {"seconds": time.perf_counter() - t0, "clear": clear},
-    )
+    """Place a human skeleton of 18 joints inside a mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A person in any pose in which hands and feet stick out, of any size, with any axis up; closed or with
+        holes, of one piece or many.
+    up : str, optional
+        Axis that ought to point up, such as ``"y"`` or ``"-z"``; a body found to lie or to stand on its head
+        is then doubted. Without it, every axis will do.
+    progress : Progress, optional
+        Called after each stage.
+
+    Returns
+    -------
+    Embedding
+        Joints in the mesh's own coordinates. Where `doubtful`, it should not be used unseen.
+
+    Raises
+    ------
+    ValueError
+        If the mesh is empty, flat, or encloses no volume.
+
+    Notes
+    -----
+    The stages of [1]_, with level sets of the distance from the head in the place of its packed spheres:
+    what lies inside, how far every cell is from the ends of the body, which ends are head, hands and feet
+    (all choices, by penalties), joints at their usual places along the middle lines.
+
+    References
+    ----------
+    .. [1] Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007.
+    """
+    return _embed(mesh, up, progress)[0]
 
 
 def embed_skin(
     mesh: Mesh, *, up: str | None = None, progress: Progress = silent
 ) -> tuple[SkinnedMesh, Embedding]:
-    """Place a human skeleton inside a mesh and bind the mesh to it."""
-    embedding = embed_skeleton(mesh, up=up, progress=progress)
-    return SkinnedMesh(mesh, embedding.skeleton, heat_weights(mesh, embedding)), embedding
+    """Place a human skeleton inside a mesh and bind the mesh to it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        See `embed_skeleton`.
+    up : str, optional
+        See `embed_skeleton`.
+    progress : Progress, optional
+        Called after each stage.
+
+    Returns
+    -------
+    skin : SkinnedMesh
+        The mesh with 21 joints, named by their roles, and heat weights.
+    embedding : Embedding
+        How they were found.
+
+    Raises
+    ------
+    ValueError
+        If the mesh is empty, flat, or encloses no volume.
+    """
+    embedding, cells = _embed(mesh, up, progress)
+    weights = heat_weights(mesh, embedding, cells=cells)
+    progress(5, 5, "weights")
+    return SkinnedMesh(mesh, embedding.skeleton, weights), embedding
+
+
+def _embed(mesh: Mesh, up: str | None, progress: Progress) -> tuple[Embedding, Cells]:
+    wanted = None if up is None else axis_vector(up)
+    clock = _Clock()
+    solid = make_solid(mesh.vertices, mesh.faces)
+    cells = body_cells(solid)
+    clock.stage("inside", 1, progress)
+    found = find_extremities(cells)
+    clock.stage("extremities", 2, progress)
+    ends = choose_ends(cells, found)
+    clock.stage("search", 3, progress)
+    report: dict[str, Any] = {
+        "extremities": len(found.cells),
+        "gap_closed_cells": solid.bridged,
+        "lost_percent": 100 * solid.lost,
+        "walls": cells.walled,
+        "seconds": clock.seconds,
+    }
+    if ends is None:
+        return average_body(cells, wanted, len(found.cells), report), cells
+    embedding = _placed(cells, ends, wanted, report)
+    clock.stage("place", 4, progress)
+    return embedding, cells
+
+
+def _placed(cells: Cells, ends: Ends, wanted: FloatArray | None, report: dict[str, Any]) -> Embedding:
+    limbs = cut_limbs(cells, ends)
+    arms = _pair([place_arm(cells, limbs.arms[i], ends.size, int(ends.cells[1 + i])) for i in range(2)])
+    legs = _pair([place_leg(cells, limb, ends.size) for limb in limbs.legs])
+    trunk = place_trunk(cells, limbs, ends, legs)
+    side, clearness, votes = find_side(trunk, arms, legs)
+    if (arms[0].upper_arm - arms[1].upper_arm) @ side < 0:
+        arms = arms[::-1]
+    if (legs[0].thigh - legs[1].thigh) @ side < 0:
+        legs = legs[::-1]
+    spine = trunk.neck - trunk.hips
+    spine = spine / max(float(np.linalg.norm(spine)), 1e-300)
+    axis = nearest_axis(spine)
+    upright = float(axis_vector(axis) @ spine)
+    frame = body_frame(side, axis_vector(axis) if upright > _TILTED else spine)
+    penalty, terms = whole_penalty(ends, limbs)
+    report |= {
+        "penalties": terms,
+        "facing_votes": votes,
+        "tilt_degrees": float(np.degrees(np.arccos(min(upright, 1.0)))),
+        "stature": ends.size / 1.075,
+    }
+    reasons = doubts(penalty, terms, clearness, spine, wanted)
+    joints, tips = _joints(trunk, arms, legs, side)
+    return Embedding(joints, tips, penalty, frame, axis, reasons, report)
+
+
+def _pair(items: list[Any]) -> tuple[Any, Any]:
+    return items[0], items[1]
+
+
+def _joints(
+    trunk: Trunk, arms: tuple[Arm, Arm], legs: tuple[Leg, Leg], side: FloatArray
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    at: dict[str, FloatArray] = {name: getattr(trunk, name) for name in ("hips", "spine", "neck", "head")}
+    tips = {"head": trunk.tip}
+    for name, arm, leg in zip(SIDES, arms, legs):
+        toes, tip = place_toes(leg, side)
+        at |= {f"{name}_{part}": getattr(arm, part) for part in ("upper_arm", "forearm", "hand")}
+        at |= {f"{name}_{part}": getattr(leg, part) for part in ("thigh", "shin", "foot")}
+        at[f"{name}_toes"] = toes
+        tips |= {f"{name}_hand": arm.tip, f"{name}_toes": tip}
+    return np.array([at[name] for name in NAMES]), tips
+
+
+class _Clock:
+    """Seconds a stage."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def stage(self, name: str, done: int, progress: Progress) -> None:
+        """Note the end of a stage."""
+        now = time.perf_counter()
+        self.seconds[name] = now - self._last
+        self._last = now
+        progress(done, 5, name)

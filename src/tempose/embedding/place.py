@@ -22,6 +22,7 @@ _KNEE_SHARE, _KNEE_TO_ANKLE = 0.445, 0.22
 _NECK_ABOVE_PIT, _HEAD_ABOVE_NECK = 0.085, 0.06
 _SPINE_SHARE = 0.16
 _FOOT_FROM = 0.03
+_BALL_SHARE = 0.36
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Leg:
     thigh: FloatArray
     shin: FloatArray
     foot: FloatArray
-    toes: FloatArray
-    tip: FloatArray
+    sole: FloatArray
+    """(k, 3) positions of the cells of the foot."""
 
 
 @dataclass(frozen=True)
@@ -100,23 +101,60 @@ def place_leg(cells: Cells, limb: Limb, size: float) -> Leg:
     Returns
     -------
     Leg
-        Hip joint, knee, ankle, ball of the foot, tip of the toes.
+        Hip joint, knee, ankle and the cells of the foot.
     """
-    ankle_level = size * (1 - _ANKLE_TO_TOE)
-    ankle = limb.at(ankle_level)
-    foot = cells.points[limb.region][_levels_of(cells, limb) > ankle_level - _FOOT_FROM * size]
-    tip = foot[np.linalg.norm(foot - ankle, axis=1).argmax()]
+    ankle_level = limb.end - _ANKLE_TO_TOE * size
     hip = 0.5 * (limb.start - _HIP_ABOVE_CROTCH * size) + 0.5 * _HIP * size
     knee = 0.5 * (limb.start + _KNEE_SHARE * (ankle_level - limb.start)) + 0.5 * (
         ankle_level - _KNEE_TO_ANKLE * size
     )
+    foot = limb.way[limb.region] > ankle_level - _FOOT_FROM * size
     return Leg(
         _before(limb, hip, 0.03 * size, 0.12 * size),
         limb.at(knee),
-        ankle,
-        tip + 0.36 * (ankle - tip),
-        tip,
+        limb.at(ankle_level),
+        cells.points[limb.region][foot],
     )
+
+
+def place_toes(leg: Leg, side: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Place the ball of the foot and the tip of the toes.
+
+    Parameters
+    ----------
+    leg : Leg
+        One leg.
+    side : (3,) float
+        Direction from right to left.
+
+    Returns
+    -------
+    toes, tip : (3,) ndarray
+        Ball of the foot, where the toes begin; the middle of the foremost cells.
+    """
+    ahead = (leg.sole - leg.foot) @ forward_of(leg, side)
+    tip = leg.sole[ahead >= 0.93 * ahead.max()].mean(axis=0)
+    return tip + _BALL_SHARE * (leg.foot - tip), tip
+
+
+def forward_of(leg: Leg, side: FloatArray) -> FloatArray:
+    """Where the toes of a leg must point, whatever way the knee is bent.
+
+    Parameters
+    ----------
+    leg : Leg
+        One leg.
+    side : (3,) float
+        Direction from right to left.
+
+    Returns
+    -------
+    (3,) ndarray
+        Unit vector, at right angles to the shin.
+    """
+    shin = leg.shin - leg.foot
+    ahead = np.cross(side, shin)
+    return ahead / max(float(np.linalg.norm(ahead)), 1e-300)
 
 
 def place_trunk(cells: Cells, limbs: Limbs, ends: Ends, legs: tuple[Leg, Leg]) -> Trunk:
@@ -146,10 +184,6 @@ def place_trunk(cells: Cells, limbs: Limbs, ends: Ends, legs: tuple[Leg, Leg]) -
     head = limbs.trunk.at(neck_level - _HEAD_ABOVE_NECK * size)
     spine = hips + _SPINE_SHARE * (neck - hips)
     return Trunk(hips, spine, neck, head, cells.points[ends.cells[0]])
-
-
-def _levels_of(cells: Cells, limb: Limb) -> FloatArray:
-    return limb.way[limb.region]
 
 
 def _before(limb: Limb, level: float, near: float, far: float) -> FloatArray:

@@ -1,0 +1,86 @@
+"""How human a body is in all, and why an embedding is doubted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tempose.embedding.limbs import Limbs
+from tempose.embedding.search import Ends
+from tempose.typing import FloatArray
+
+_CROTCH, _CROTCH_SPREAD = 0.515, 0.035
+_PIT, _PIT_SPREAD = 0.265, 0.045
+DOUBTFUL = 1.5
+"""Root mean square of the penalty terms, in standard deviations, from which a body is no longer human."""
+_CLEAR = 0.15
+_TURNED = np.cos(np.radians(50.0))
+
+
+def whole_penalty(ends: Ends, limbs: Limbs) -> tuple[float, dict[str, float]]:
+    """Penalty of ends and limbs together.
+
+    Parameters
+    ----------
+    ends : Ends
+        Head, hands and feet.
+    limbs : Limbs
+        The parts of the body.
+
+    Returns
+    -------
+    penalty : float
+        1 where doubt begins.
+    terms : dict of str to float
+        Each term, in standard deviations of the human body.
+    """
+    terms = dict(ends.terms)
+    pit = (limbs.arms[0].start + limbs.arms[1].start) / 2 / ends.size
+    terms["crotch"] = (limbs.legs[0].start / ends.size - _CROTCH) / _CROTCH_SPREAD
+    terms["armpits"] = (pit - _PIT) / _PIT_SPREAD
+    return float(np.sqrt(np.mean(np.square(list(terms.values()))))) / DOUBTFUL, terms
+
+
+def doubts(
+    penalty: float, terms: dict[str, float], clearness: float, spine: FloatArray, up: FloatArray | None
+) -> tuple[str, ...]:
+    """Say why an embedding is doubted.
+
+    Parameters
+    ----------
+    penalty : float
+        From `whole_penalty`.
+    terms : dict of str to float
+        Its terms.
+    clearness : float
+        How sure the front is.
+    spine : (3,) float
+        Unit vector from the hips to the neck.
+    up : (3,) float or None
+        Axis that ought to point up.
+
+    Returns
+    -------
+    tuple of str
+        Empty when there is no doubt.
+    """
+    reasons: list[str] = []
+    if penalty > 1.0:
+        worst = sorted(terms, key=lambda name: -abs(terms[name]))[:3]
+        listed = ", ".join(f"{name} {terms[name]:+.1f}" for name in worst)
+        reasons.append(
+            f"the body is not shaped like a human's: penalty {penalty:.2f}, doubtful above 1; "
+            f"furthest from usual, in standard deviations: {listed}"
+        )
+    if clearness < _CLEAR:
+        reasons.append(
+            f"front and back are hard to tell: clearness {clearness:.2f}, doubtful below {_CLEAR}; "
+            "left and right may be exchanged"
+        )
+    if up is not None:
+        upright = float(spine @ up)
+        if upright < -_TURNED:
+            reasons.append("the body stands on its head: its spine points down")
+        elif upright < _TURNED:
+            angle = np.degrees(np.arccos(np.clip(upright, -1, 1)))
+            reasons.append(f"the body lies or leans: its spine is {angle:.0f} degrees from upright")
+    return tuple(reasons)
