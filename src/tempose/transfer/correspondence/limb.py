@@ -45,6 +45,11 @@ def find_limb(sections: Sections, face: int, axis: FloatArray | None = None) -> 
     Limb or None
         None where the mesh has no section there, as on a face without area.
 
+    Raises
+    ------
+    ValueError
+        If `axis` has no direction.
+
     Notes
     -----
     The normals of a cylinder or cone lie on a circle, so the axis is the direction in which they vary
@@ -54,7 +59,10 @@ def find_limb(sections: Sections, face: int, axis: FloatArray | None = None) -> 
     point = sections.V[sections.F[face]].mean(axis=0)
     if axis is None:
         axis = limb_axis(sections, face)
-    axis = np.asarray(axis, dtype=np.float64) / max(float(np.linalg.norm(axis)), 1e-300)
+    length = float(np.linalg.norm(axis))
+    if length == 0 or not np.isfinite(length):
+        raise ValueError(f"axis must be a direction, got {axis}")
+    axis = np.asarray(axis, dtype=np.float64) / length
     loops = sections.cut(point, axis, face)
     if not loops:
         return None

@@ -101,10 +101,9 @@ def _axis_of_normals(sections: Sections, face: int, size: float) -> FloatArray:
     near = near[_connected(F[near], len(V), int(np.searchsorted(near, face)))]
     normals, areas = face_normals(V, F[near]), face_areas(V, F[near])
     about = normals - (areas @ normals) / max(float(areas.sum()), 1e-300)
-    axis = np.linalg.eigh((areas[:, None] * about).T @ about)[1][:, 0]
-    # on a nearly flat patch nothing varies: a direction within the surface will do
-    axis = axis - (axis @ N) * N if abs(axis @ N) > _FIRM else axis
-    return axis / max(float(np.linalg.norm(axis)), 1e-300)
+    directions = np.linalg.eigh((areas[:, None] * about).T @ about)[1].T
+    # on a nearly flat patch nothing varies along the normal either: a direction within the surface then
+    return next(d for d in directions if abs(d @ N) <= _FIRM)
 
 
 def _connected(F: IntArray, n: int, start: int) -> IntArray:
