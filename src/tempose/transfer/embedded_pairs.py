@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tempose.clips import Mesh, Skeleton
+import numpy as np
+
+from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.embedding import Embedding, embed_skin
+from tempose.kinematics import rest_transforms
 from tempose.kinematics.roles import find_roles
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.skin_pairs import pairs_from_skin
@@ -15,6 +18,8 @@ REFUSED = 2.5
 """Penalty from which a target is taken for no human; doubt begins at 1."""
 HOW_TO_GO_ON = "give a pairs file (--pairs) or a target with skin weights"
 _FEWEST_ROLES = 4
+_SOFT = 0.08
+"""Share of the trunk's length over which one of its parts passes into the next."""
 
 
 def pairs_from_embedding(
@@ -56,8 +61,27 @@ def pairs_from_embedding(
             f"the target does not look human: a skeleton fits into it with penalty {embedding.penalty:.1f}, "
             f"into people with less than 1 ({'; '.join(embedding.reasons)}); {HOW_TO_GO_ON}"
         )
-    pairs = pairs_from_skin(source, skinned, mapping)
+    pairs = pairs_from_skin(source, _slab_trunk(skinned), mapping)
     return replace(pairs, origin="a skeleton placed inside the target"), embedding
+
+
+def _slab_trunk(skin: SkinnedMesh) -> SkinnedMesh:
+    """Share the trunk out by height: to heat, pelvis and ribs are short bones between strong neighbours."""
+    index = {name: j for j, name in enumerate(skin.skeleton.names)}
+    places = rest_transforms(skin.skeleton)[1]
+    hips, spine, chest, neck = (places[index[name]] for name in ("hips", "spine", "chest", "neck"))
+    up = (neck - hips) / max(float(np.linalg.norm(neck - hips)), 1e-300)
+    V, weights = skin.mesh.vertices, np.array(skin.weights)
+    thighs = [index["left_thigh"], index["right_thigh"]]
+    above = np.where((V - hips) @ up > 0, 1.0, 0.0)
+    trunk = [index[name] for name in ("hips", "spine", "chest")]
+    share = weights[:, trunk].sum(axis=1) + above * weights[:, thighs].sum(axis=1)
+    weights[:, thighs] *= 1 - above[:, None]
+    reach = _SOFT * float(np.linalg.norm(neck - hips))
+    low = np.clip(0.5 - (V - spine) @ up / reach, 0, 1)
+    high = np.clip(0.5 + (V - chest) @ up / reach, 0, 1)
+    weights[:, trunk] = share[:, None] * np.column_stack([low, 1 - low - high, high])
+    return replace(skin, weights=np.maximum(weights, 0.0))
 
 
 def embedding_doubts(embedding: Embedding) -> tuple[str, ...]:
