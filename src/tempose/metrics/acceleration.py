@@ -20,6 +20,8 @@ class AccelerationRatio:
     """Of their root mean squares."""
     p99: float
     """Of their 99th percentiles."""
+    max: float
+    """Of their largest values: one pop of one foot is seen here."""
 
 
 def accelerations(points: FloatArray, fps: float, window: float = WINDOW) -> FloatArray:
@@ -92,4 +94,5 @@ def foot_acceleration(
         return None
     rms = float(np.sqrt((ours**2).mean() / (theirs**2).mean()))
     top = float(np.percentile(theirs, 99))
-    return AccelerationRatio(rms, float(np.percentile(ours, 99)) / top if top > 0 else rms)
+    p99 = float(np.percentile(ours, 99)) / top if top > 0 else rms
+    return AccelerationRatio(rms, p99, float(ours.max() / theirs.max()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -179,7 +179,7 @@ def contact_facts(job: Prepared, placed: Placed, fps: float) -> dict[str, Any]:
     dict
         ``contacts``: a dict a foot, see `Standing.facts`, in frames of the source;
         ``foot_acceleration``: of the target's ankles over that of the source's times the ratio of leg
-        lengths, ``rms`` and ``p99``; None where there is nothing to compare; ``ground``: its height, by how
+        lengths, ``rms``, ``p99`` and ``max``; None where there is nothing to compare; ``ground``: its height, by how
         much hands were lifted and what was deeper pressed flat; None without a plane.
     """
     feet, standing = job.feet, placed.standing
@@ -191,7 +191,7 @@ def contact_facts(job: Prepared, placed: Placed, fps: float) -> dict[str, Any]:
     return {
         "contacts": {name: standing.facts(held, f, job.first_frame) for f, name in enumerate(feet.names)},
         **_ground_facts(placed, len(feet.names)),
-        "foot_acceleration": None if ratio is None else {"rms": ratio.rms, "p99": ratio.p99},
+        "foot_acceleration": None if ratio is None else asdict(ratio),
     }
 
 
