@@ -178,9 +178,9 @@ def contact_facts(job: Prepared, placed: Placed, fps: float) -> dict[str, Any]:
     -------
     dict
         ``contacts``: a dict a foot, see `Standing.facts`, in frames of the source;
-        ``foot_acceleration``: of the target's ankles over that of the source's times the ratio of leg
-        lengths, ``rms``, ``p99`` and ``max``; None where there is nothing to compare; ``ground``: its height, by how
-        much hands were lifted and what was deeper pressed flat; None without a plane.
+        ``ground``: its height, by how much hands were lifted, how much was still pressed flat; None without;
+        ``foot_acceleration``: ``rms``, ``p99`` and ``max`` of the target's ankles over those of the source's
+        times the ratio of leg lengths; None where there is nothing to compare.
     """
     feet, standing = job.feet, placed.standing
     held = feet.standing if placed.held else np.zeros_like(feet.standing)
