@@ -101,7 +101,7 @@ def _carry_out(layer: Layer, group: Group) -> list[_Check]:
         else:
             layer.turn_part(part, turns)
     checks: list[_Check] = []
-    if any(a.move or a.to for a in group.entries):
+    if any(a.moves for a in group.entries):
         base = part.points(layer.frames)
         offsets, active = wanted_offsets(group, layer.rotations, base)
         wanted = base + offsets
@@ -118,10 +118,10 @@ def _carry_out(layer: Layer, group: Group) -> list[_Check]:
 def _checks(group: Group, missed: FloatArray) -> list[_Check]:
     checks: list[_Check] = []
     for n, (a, key) in enumerate(zip(group.entries, group.keys)):
-        if a.move is None and a.to is None:
+        if not a.moves:
             continue
         later = any(
-            key.last >= other.first and key.first <= other.last and b.move
+            key.last >= other.first and key.first <= other.last and b.move is not None
             for b, other in list(zip(group.entries, group.keys))[n + 1 :]
         )
         place = np.array(a.to) if a.to is not None and not later else None

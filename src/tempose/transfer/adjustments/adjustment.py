@@ -11,7 +11,7 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.rotations import from_rotation_vector, normalise
-from tempose.typing import FloatArray
+from tempose.typing import FloatArray, IntArray
 
 AXES = ("world", "body", "part")
 EASE = 0.4
@@ -62,12 +62,12 @@ class Adjustment:
     {'part': 'left_hand', 'frame': 40, 'move': [0.0, 0.25, 0.0]}
     """
 
-    part: str | tuple[int, ...]
+    part: str | Sequence[int] | IntArray
     frame: int | None = None
     time: float | None = None
-    move: tuple[float, ...] | None = None
-    to: tuple[float, ...] | None = None
-    turn: tuple[float, ...] | None = None
+    move: Sequence[float] | FloatArray | None = None
+    to: Sequence[float] | FloatArray | None = None
+    turn: Sequence[float] | FloatArray | None = None
     axes: str = "world"
     ease_in: float = EASE
     ease_out: float = EASE
@@ -100,6 +100,11 @@ class Adjustment:
             raise ValueError(f"axes must be one of {', '.join(AXES)}, got {self.axes!r}")
         if self.follow is not None and type(self.follow) is not bool:
             raise ValueError(f"follow must be true or false, got {self.follow!r}")
+
+    @property
+    def moves(self) -> bool:
+        """Whether a point is moved, not only turned."""
+        return self.move is not None or self.to is not None
 
     @property
     def rotation(self) -> FloatArray | None:

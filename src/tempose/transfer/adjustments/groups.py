@@ -76,7 +76,7 @@ def _check_possible(part: Part, a: Adjustment) -> None:
     if a.axes != "world" and part.bone is None:
         raise ValueError(f"axes {a.axes!r} need a skeleton as source; use 'world'")
     named = isinstance(a.part, str) and not part.whole
-    if (a.move or a.to) and named and part.chain is None:
+    if a.moves and named and part.chain is None:
         raise ValueError(
             f"{part.name!r} hangs on the hips and cannot move by itself; turn it, or move 'hips'"
         )

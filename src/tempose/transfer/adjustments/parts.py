@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,14 +65,14 @@ class Part:
         return apply_regressor(np.asarray(V), self.vertices[None], self.weights[None])[:, 0]
 
 
-def find_part(job: Prepared, part: str | tuple[int, ...]) -> Part:
+def find_part(job: Prepared, part: str | Sequence[int] | IntArray) -> Part:
     """Find what an adjustment speaks of.
 
     Parameters
     ----------
     job : Prepared
         A transfer.
-    part : str or tuple of int
+    part : str or sequence of int
         Body role, joint name, ``"root"``, or vertices of the target.
 
     Returns

@@ -81,7 +81,7 @@ def wanted_offsets(group: Group, Q: FloatArray, base: FloatArray) -> tuple[Float
         Frames in which there is any.
     """
     path = np.array(base)
-    chosen = [n for n, a in enumerate(group.entries) if a.move is not None or a.to is not None]
+    chosen = [n for n, a in enumerate(group.entries) if a.moves]
     keys = [_copy(group.keys[n], n) for n in chosen]
     for runs in make_layers(keys):
         before = np.array(path)
