@@ -85,7 +85,7 @@ def test_faces_beyond_the_joint_do_not_move_the_rings() -> None:
     """The tube reaches below where its lower bone begins: places are measured from the joint."""
     V, F, weights, starts, ends = two_bones()
     starts[1], ends[1] = [0, 0.3, 0], [0, 0.9, 0]
-    faces, bones = mark_bones(V, F, weights, ("", "left_shin"), starts, ends)
+    faces, bones = mark_bones(V, F, weights, ("", "left_shin"), starts, ends, (0.27, 0.73))
     y = V[F[faces[bones == 1]]][:, :, 1]
     for place in (0.3 + 0.27 * 0.6, 0.3 + 0.73 * 0.6):
         assert ((y.min(axis=1) <= place) & (y.max(axis=1) >= place)).sum() >= RING_SIZE

@@ -85,12 +85,12 @@ def test_the_built_in_human_rests_when_its_skeleton_does() -> None:
 
 def test_marks_turn_exactly_as_the_bones_of_their_own_skeleton() -> None:
     body, clip = human_body(), walking("a")
-    job = prepare_skeleton(clip, body.mesh, pairs_from_skin(body.skeleton, body))
+    job = prepare_skeleton(clip, body.mesh, pairs_from_skin(body.skeleton, body), lead=0)
     motion = bone_motion(clip, job.bones, {})
     assert_allclose(angle_between(job.rotations[:, : len(job.bones.names)], motion.turns), 0, rtol=0, atol=1e-7)
     # and so do the bones of a skeleton with other local axes, away from their own rest
     other = rolled(clip, np.random.default_rng(3))
-    job = prepare_skeleton(other, body.mesh, pairs_from_skin(other.skeleton, body))
+    job = prepare_skeleton(other, body.mesh, pairs_from_skin(other.skeleton, body), lead=0)
     assert_allclose(angle_between(job.rotations[:, : len(job.bones.names)], motion.turns), 0, rtol=0, atol=1e-6)
 
 
@@ -354,7 +354,7 @@ def test_a_body_in_t_pose_and_one_in_a_pose_walk_alike() -> None:
     for report in (a.report, t.report):
         assert report["bone_direction_deg"]["mean"] < 3
     jobs = [
-        prepare_skeleton(walking(), b.mesh, pairs_from_skin(walking().skeleton, b))
+        prepare_skeleton(walking(), b.mesh, pairs_from_skin(walking().skeleton, b), lead=0)
         for b in (human_body(), t_body())
     ]
     for role in ("left_forearm", "right_upper_arm", "left_shin"):
@@ -376,7 +376,7 @@ def test_a_mapping_moves_a_body_whose_source_has_no_names() -> None:
 
 def test_relative_turns_are_those_of_the_source_when_both_stand_alike() -> None:
     body, clip = t_body(), walking()
-    job = prepare_skeleton(clip, body.mesh, pairs_from_skin(clip.skeleton, body))
+    job = prepare_skeleton(clip, body.mesh, pairs_from_skin(clip.skeleton, body), lead=0)
     knee = [job.bones.roles.index(r) for r in ("left_thigh", "left_shin")]
     relative = multiply(conjugate(job.rotations[:, knee[0]]), job.rotations[:, knee[1]])
     local = clip.rotations[:, clip.skeleton.index("left_shin")]

@@ -14,6 +14,7 @@ from tempose.transfer.bones import Bones, make_bones, split_role
 from tempose.transfer.columns import Columns
 from tempose.transfer.facing import UP
 from tempose.transfer.feet import Feet, bone_feet, flat_stance
+from tempose.transfer.lead import LEAD, learn_lead
 from tempose.transfer.motion_transfer import Anchor, MotionTransfer
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.pose import BonePose
@@ -68,6 +69,7 @@ def prepare_skeleton(
     rest_frame: int | None = None,
     volume: float = 0.0,
     twist: bool = True,
+    lead: float = LEAD,
 ) -> Prepared:
     """Do everything that comes before the frames.
 
@@ -89,6 +91,8 @@ def prepare_skeleton(
         See `MotionTransfer`.
     twist : bool, default True
         Whether forearms, upper arms and thighs take up the twist at their ends little by little.
+    lead : float, default 0.6
+        Share of the limbs' lag behind their bones that is made up for, see `Lead`.
 
     Returns
     -------
@@ -116,6 +120,8 @@ def prepare_skeleton(
     Q = consistent_signs(multiply(motion.turns, K), bones.parents)
     solver.anchor = _pelvis(mesh, basis, bones, target)
     owner = basis.argmax(axis=1)
+    if lead > 0:
+        Q = learn_lead(solver, columns, bones, motion, target, owner, Q).turned(Q, lead)
     return Prepared(
         solver,
         columns.rotations(Q),

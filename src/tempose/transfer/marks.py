@@ -9,8 +9,17 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 RING_PLACES = (0.27, 0.73)
 """Where along a bone the rings lie; nearer to the joints bends sharper."""
-PART_PLACES = {"forearm": (0.27, 0.5, 0.7, 0.9)}
-"""Parts with other rings: a forearm passes the twist of the hand on from ring to ring."""
+PART_PLACES: dict[str, tuple[float, ...]] = {
+    "upper_arm": (0.4, 0.6),
+    "forearm": (0.4, 0.55, 0.72, 0.9),
+    "thigh": (0.4, 0.6),
+    "shin": (0.4, 0.6),
+    "clavicle": (0.3,),
+    "spine": (0.5,),
+    "neck": (0.5,),
+}
+"""Parts with other rings. Limbs bend softly between rings near their middle, and `Lead` makes them follow all
+the same; a forearm passes the twist of the hand on from ring to ring."""
 RING_SIZE = 12
 """Marked faces a ring."""
 _LAYER, _OUTLIER, _OUTER = 1.25, 1.7, 1.7
@@ -64,7 +73,7 @@ def mark_bones(
     starts, ends : (B, 3) float
         Where each bone starts and ends in the rest pose.
     ring_places : tuple of float, optional
-        Fractions of the bone at which rings lie; (0.27, 0.73), and four on a forearm, if not given.
+        Fractions of the bone at which rings lie; as `PART_PLACES` says if not given.
 
     Returns
     -------
