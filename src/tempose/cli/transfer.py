@@ -26,6 +26,7 @@ def transfer(  # numpydoc ignore=PR01
     contacts: given.Contacts = True,
     contact_frames: given.ContactFrames = None,
     ground: given.Ground = None,
+    adjust: given.Adjust = None,
     volume: given.Volume = 0.0,
     start: given.Start = 0,
     stop: given.Stop = None,
@@ -52,6 +53,8 @@ def transfer(  # numpydoc ignore=PR01
     settings: dict[str, Any] = {"mapping": load_mapping(mapping), "volume": volume}
     settings |= {"contacts": load_contacts(contact_frames, contacts), "ground": parse_ground(ground)}
     settings["embed"] = embed
+    if adjust is not None:
+        settings["adjustments"] = tempose.transfer.load_adjustments(adjust)
     settings |= load_rest(source_rest, motion)
     loaded = time.perf_counter()
     trimmed = _trimmed(motion, start, stop, step)
@@ -130,4 +133,23 @@ def summary_rows(report: dict[str, Any]) -> list[tuple[str, str]]:
                 f"{report['skate']:.1f} % of the height a second (source {report['source_skate']:.1f})",
             )
         )
+    if report.get("adjustments"):
+        rows.append(("adjustments", adjustments_line(report["adjustments"])))
     return rows
+
+
+def adjustments_line(found: dict[str, Any]) -> str:
+    """Say in one line what became of the adjustments.
+
+    Parameters
+    ----------
+    found : dict
+        ``adjustments`` of a report.
+
+    Returns
+    -------
+    str
+        How many there were, frames changed, how many missed their place.
+    """
+    missed = f", {len(found['unmet'])} out of reach" if found["unmet"] else ""
+    return f"{found['count']}, {found['frames_changed']} frames changed{missed}"

@@ -50,6 +50,10 @@ Ground = Annotated[
     str | None,
     typer.Option(metavar="HEIGHT|none", help="Plane, in metres, to stand on; nothing sinks into it."),
 ]
+Adjust = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="JSON or TOML: parts moved or turned at a frame, smoothly in and out."),
+]
 Volume = Annotated[
     float, typer.Option(metavar="W", min=0, help="Hold the volume at bends; 1 holds most of it.")
 ]

@@ -10,6 +10,7 @@ from typing import Any
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
 from tempose.transfer.adjustments.adjustment import Adjustment
+from tempose.transfer.adjustments.groups import group_by_part
 from tempose.transfer.adjustments.on_result import adjust
 from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
@@ -119,6 +120,7 @@ def transfer_motion(
         volume=volume,
     )
     job = with_contacts(job, contacts, source.n_frames, ground)
+    group_by_part(job, adjustments, len(job.rotations), source.fps)
     clock.lap("set-up")
     V = _solve(job, progress, scratch)
     clock.lap("frames")
