@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, Skeleton, SkinnedMesh
-from tempose.embedding import Embedding, embed_skin
+from tempose.embedding import Embedding
 from tempose.kinematics import rest_transforms
 from tempose.kinematics.roles import find_roles
+from tempose.transfer.dressed import embed_dressed
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.skin_pairs import pairs_from_skin
 
@@ -55,7 +56,7 @@ def pairs_from_embedding(
             f"pairs can be found only for a human's skeleton; of the source's joints ({_some(source.names)}) "
             f"{len(known)} are known as parts of a body; name them with a mapping, or {HOW_TO_GO_ON}"
         )
-    skinned, embedding = embed_skin(mesh)
+    skinned, embedding = embed_dressed(mesh)
     if embedding.penalty > REFUSED:
         raise ValueError(
             f"the target does not look human: a skeleton fits into it with penalty {embedding.penalty:.1f}, "
