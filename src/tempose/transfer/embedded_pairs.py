@@ -15,8 +15,8 @@ from tempose.transfer.dressed import embed_dressed
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.skin_pairs import pairs_from_skin
 
-REFUSED = 2.5
-"""Penalty from which a target is taken for no human; doubt begins at 1."""
+REFUSED = 1.5
+"""Penalty from which a target is taken for no human: people reach 0.8, four-legged animals start at 1.6."""
 HOW_TO_GO_ON = "give a pairs file (--pairs) or a target with skin weights"
 _FEWEST_ROLES = 4
 _SOFT = 0.08
