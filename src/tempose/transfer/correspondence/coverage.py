@@ -90,6 +90,8 @@ def check_coverage(
     names: tuple[str, ...] = source.names if isinstance(source, Skeleton) else ()
     if isinstance(source, Mesh):
         limits = (len(source.faces) if faces else len(source.vertices), limits[1])
+    if len(pairs) and int(pairs.target.max()) >= limits[1]:
+        raise ValueError(f"pairs name target {pairs.target.max()}, but the target has {limits[1]}")
     found = _few(pairs)
     if source is not None and not found:
         pairs.check(*limits, names)

@@ -146,7 +146,7 @@ def _decide(found: list[_Fit], prefer: bool) -> Alignment:
     others = [fit for fit in found[1:] if _angle(fit.R, best.R) > _DISTINCT]
     if not others:
         return Alignment(best.scale, q, best.shift, best.residual)
-    ratio = cost(best) / max(cost(others[0]), 1e-300)
+    ratio = max(cost(best), _EXACT) / max(cost(others[0]), _EXACT)
     warnings = ()
     if ratio > _CERTAIN:
         degrees = np.degrees(_angle(others[0].R, best.R))

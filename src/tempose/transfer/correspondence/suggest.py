@@ -75,6 +75,8 @@ class PartnerFinder:
             several = len(here) >= _ENOUGH
             alignment = align_points(here, there) if several else align_meshes(source, target)
         self.alignment, self.kind = alignment, kind
+        same = pairs is not None and pairs.kind == kind
+        self._partners = dict(zip(np.asarray(pairs.source).tolist(), pairs.target.tolist())) if same else {}
         V = alignment.apply(source.vertices)
         known = alignment.apply(here)
         self._warp = Warp(known, there, V, source.faces, target.vertices, target.faces)
@@ -105,7 +107,7 @@ class PartnerFinder:
         Returns
         -------
         tuple of Candidate
-            Best first, none nearer to another than 1 % of the diagonal unless they face apart.
+            Best first, the known partner of a paired place before all; none nearer to another than 1 % of the diagonal unless they face apart.
 
         Raises
         ------
@@ -115,12 +117,15 @@ class PartnerFinder:
         if not 0 <= picked < len(self._picks):
             raise ValueError(f"picked must be one of {len(self._picks)} {self.kind}, got {picked}")
         at, normal = self._picks[picked], self._pick_normals[picked]
+        known = self._partners.get(picked)
         pool = min(_POOL, len(self._points))
         _, near = self._tree.query(self._features(at[None], normal[None]), k=pool)
         near = np.atleast_1d(np.squeeze(near))
+        near = near if known is None else np.union1d(near, [known])
         distance = np.linalg.norm(self._points[near] - at, axis=1) / self._size
         agree = self._normals[near] @ normal
         cost = distance**2 + _NORMAL**2 * (1 - agree) + self._detour(picked, near)
+        cost[near == (-1 if known is None else known)] = 0.0
         chosen: list[Candidate] = []
         kept: list[int] = []
         for i in np.argsort(cost, kind="stable"):

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from tempose.geometry import weld
+from tempose.geometry import vertex_adjacency, weld
 from tempose.typing import FloatArray, IntArray
 
-_SEEDS = 24
+_SEEDS = 12
 _WHOLE = 0.9
+_HASHES = 8
 
 
 def mirrored_faces(V: FloatArray, F: IntArray, V_other: FloatArray, guess: IntArray) -> IntArray:
@@ -36,8 +37,9 @@ def mirrored_faces(V: FloatArray, F: IntArray, V_other: FloatArray, guess: IntAr
 
     Notes
     -----
-    One pair of faces with one pair of corners fixes the map of a whole connected piece. Starts are tried
-    from the best fitting pairs of faces on; one that contradicts itself is given up.
+    One pair of faces with one pair of corners fixes the map of a whole connected piece. Starts are pairs of
+    faces whose neighbourhoods are alike and like no other's, and those that fit best in space; one that
+    contradicts itself is given up.
     """
     _, inverse = weld(V)
     G = inverse[F].astype(np.int64)
@@ -50,21 +52,58 @@ def mirrored_faces(V: FloatArray, F: IntArray, V_other: FloatArray, guess: IntAr
     misfit = np.linalg.norm(flipped - theirs, axis=2).max(axis=1)
     size = np.linalg.norm(own - own.mean(axis=1, keepdims=True), axis=2).max(axis=1)
     order = np.argsort(misfit / np.maximum(size, 1e-300), kind="stable")
-    return _pieces(G, beside, guess, turn, order)
+    seeds = [(order, guess[order], turn[order]), _alike(G)]
+    found = np.full(len(G), -1, dtype=np.int64)
+    for start in seeds[::-1]:
+        found = _pieces(G, beside, found, *start)
+    return found
 
 
-def _pieces(G: IntArray, beside: IntArray, guess: IntArray, turn: IntArray, order: IntArray) -> IntArray:
+def _alike(G: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Pairs of faces with the same degrees round them, of which there are just two in the mesh.
+
+    The colours of a vertex and its neighbours are hashed into its new colour, again and again [1]_; they know
+    nothing of numbers, places and orientation.
+
+    .. [1] Weisfeiler and Lehman, "The Reduction of a Graph to Canonical Form", 1968.
+    """
+    A = vertex_adjacency(G, int(G.max()) + 1).astype(np.uint64)
+    colour = _mixed(np.asarray(A.sum(axis=1)).ravel().astype(np.uint64))
+    for _ in range(_HASHES):
+        colour = _mixed(colour * np.uint64(3) + A @ colour)
+    corners = colour[G]
+    _, kind, count = np.unique(corners.sum(axis=1), return_inverse=True, return_counts=True)
+    kind = kind.ravel()
+    order = np.argsort(kind, kind="stable")
+    order = order[count[kind[order]] == 2]
+    a, b = order[::2], order[1::2]
+    turns = np.arange(3)
+    mirrored = corners[b][:, (turns[:, None] - turns) % 3]
+    fits = (mirrored == corners[a][:, None]).all(axis=2)
+    # a corner that two turns put in place says nothing
+    clear = fits.sum(axis=1) == 1
+    return a[clear], b[clear], fits.argmax(axis=1)[clear]
+
+
+def _mixed(x: IntArray) -> IntArray:
+    x = (x ^ (x >> np.uint64(31))) * np.uint64(0x9E3779B97F4A7C15)
+    return x ^ (x >> np.uint64(29))
+
+
+def _pieces(
+    G: IntArray, beside: IntArray, known: IntArray, faces: IntArray, partners: IntArray, turns: IntArray
+) -> IntArray:
     n = int(G.max()) + 1
-    result = np.full(len(G), -1, dtype=np.int64)
-    tried = np.zeros(len(G), dtype=np.int64)
+    result = np.array(known)
     piece = _label(beside)
     sizes = np.bincount(piece)
-    for f in order:
+    tried = np.zeros(len(sizes), dtype=np.int64)
+    for f, g, turn in zip(faces.tolist(), partners.tolist(), turns.tolist()):
         mine = int(piece[f])
         if result[f] >= 0 or tried[mine] >= _SEEDS:
             continue
         tried[mine] += 1
-        found, count = _walk(G, beside, n, int(f), int(guess[f]), int(turn[f]))
+        found, count = _walk(G, beside, n, f, g, turn)
         if count >= _WHOLE * sizes[mine] and (result[found[found >= 0]] < 0).all():
             result = np.where(found >= 0, found, result)
             back = np.flatnonzero(found >= 0)

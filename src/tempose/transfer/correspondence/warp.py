@@ -10,6 +10,7 @@ from tempose.transfer.correspondence.closest import spread_points
 from tempose.typing import FloatArray, IntArray
 
 _HELPERS, _ROUNDS = 200, 3
+_ENOUGH = 6
 _SOFT = 0.1
 """Smoothing of the helpers, whose partners are guessed; pairs are met exactly."""
 _BEND = 0.05
@@ -53,6 +54,11 @@ class Warp:
             helpers = helpers[gap > 1e-3 * size]
         tree = KDTree(np.hstack([V_target, _BEND * size * vertex_normals(V_target, F_target)]))
         W = V
+        if len(points) >= _ENOUGH:
+            # so many pairs tell more of where the parts are than the alignment does
+            self._centres = points
+            self._fit(partners - points, np.full(len(points), _SOFT * size))
+            W = self.apply(V)
         for _ in range(_ROUNDS):
             N = vertex_normals(W, F)[helpers]
             _, near = tree.query(np.hstack([W[helpers], _BEND * size * N]))
