@@ -10,6 +10,7 @@ from tempose.metrics.ground import Penetration, ground_depths, penetration
 from tempose.metrics.patches import patch_round
 from tempose.metrics.skate import skate, sole_velocities
 from tempose.metrics.volume import (
+    Enclosed,
     component_volume_change,
     component_volumes,
     volume_change,
@@ -20,6 +21,7 @@ __all__ = [
     "AccelerationRatio",
     "ClipErrors",
     "DirectionError",
+    "Enclosed",
     "Penetration",
     "Ratios",
     "accelerations",

@@ -47,6 +47,37 @@ def volumes(V: FloatArray, F: IntArray) -> FloatArray:
     return _sum_tetrahedra(V, F, np.zeros(len(F), dtype=int), 1)[:, 0]
 
 
+class Enclosed:
+    """The volume inside one surface or patch of it, asked for many times.
+
+    Parameters
+    ----------
+    F : (m, 3) int
+        Faces, counter-clockwise seen from outside; what is open is closed by fans.
+    n : int
+        Number of vertices.
+    """
+
+    def __init__(self, F: IntArray, n: int) -> None:
+        self.F = as_indices(F, "F", ("m", 3), limit=n)
+        self._caps = close_holes(self.F, n)
+
+    def volumes(self, V: FloatArray) -> FloatArray:
+        """Signed volume in each frame, as `tempose.metrics.volumes` gives it.
+
+        Parameters
+        ----------
+        V : (T, n, 3) float
+            Frames.
+
+        Returns
+        -------
+        (T,) ndarray
+            Unit of `V` cubed.
+        """
+        return _tetrahedra(np.asarray(V, dtype=np.float64), self.F, self._caps).sum(axis=1)
+
+
 def component_volumes(V: FloatArray, F: IntArray) -> FloatArray:
     """Signed volume of every connected component in each frame, holes closed by fans.
 

@@ -14,6 +14,7 @@ from tempose.transfer.bones import Bones, make_bones, split_role
 from tempose.transfer.columns import Columns
 from tempose.transfer.facing import UP
 from tempose.transfer.feet import Feet, bone_feet, flat_stance
+from tempose.transfer.joint_patches import inner_strengths, joint_patches, volume_fill
 from tempose.transfer.lead import LEAD, learn_lead
 from tempose.transfer.motion_transfer import Anchor, MotionTransfer
 from tempose.transfer.pairs import Pairs
@@ -120,6 +121,7 @@ def prepare_skeleton(
     Q = consistent_signs(multiply(motion.turns, K), bones.parents)
     solver.anchor = _pelvis(mesh, basis, bones, target)
     owner = basis.argmax(axis=1)
+    solver.fill = volume_fill(solver, joint_patches(solver, bones, target, owner), volume)
     if lead > 0:
         Q = learn_lead(solver, columns, bones, motion, target, owner, Q).turned(Q, lead)
     return Prepared(
@@ -175,7 +177,8 @@ def _solver(
     columns = Columns(B)
     if twist:
         columns, column = twist_columns(bones, target, mesh.vertices[marked].mean(axis=1), column)
-    solver = MotionTransfer(mesh, marked.ravel(), np.repeat(column, 3), len(columns), volume=volume)
+    strengths = inner_strengths([bones.roles[b] for b in columns.bones], volume)
+    solver = MotionTransfer(mesh, marked.ravel(), np.repeat(column, 3), len(columns), volume=strengths)
     return solver, columns, target
 
 

@@ -122,7 +122,7 @@ def _nearest_pairs(V: FloatArray, groups: IntArray) -> IntArray:
     return np.column_stack([mine[order], rest[index[order]]]).astype(np.int64)
 
 
-def inner_edges(V: FloatArray, F: IntArray, strength: float) -> ExtraEdges:
+def inner_edges(V: FloatArray, F: IntArray, strength: float | FloatArray) -> ExtraEdges:
     """Join each vertex to the one opposite it through the body, so that bends keep their volume.
 
     Parameters
@@ -131,13 +131,13 @@ def inner_edges(V: FloatArray, F: IntArray, strength: float) -> ExtraEdges:
         Rest vertices, closed surface with outward normals.
     F : (m, 3) int
         Faces.
-    strength : float
-        0 for none; 1 holds most of the volume.
+    strength : float or (n,) float
+        0 for none; 1 holds most of the volume. It may differ from vertex to vertex.
 
     Returns
     -------
     ExtraEdges
-        ``w = strength * 4 A_i / |v_i - v_j|^2`` with A_i the vertex area.
+        ``w = strength_i * 4 A_i / |v_i - v_j|^2`` with A_i the vertex area.
 
     Notes
     -----
@@ -147,14 +147,15 @@ def inner_edges(V: FloatArray, F: IntArray, strength: float) -> ExtraEdges:
     ----------
     .. [1] Zhou et al., "Large Mesh Deformation Using the Volumetric Graph Laplacian", SIGGRAPH 2005.
     """
-    if strength <= 0 or len(F) == 0:
+    strength = np.broadcast_to(np.asarray(strength, dtype=np.float64), (len(V),))
+    if not (strength > 0).any() or len(F) == 0:
         return ExtraEdges.none()
     normals = vertex_normals(V, F)
     partner = _opposite_vertices(V, normals)
-    i = np.flatnonzero(partner >= 0)
+    i = np.flatnonzero((partner >= 0) & (strength > 0))
     j = partner[i]
     squared = ((V[i] - V[j]) ** 2).sum(axis=1)
-    weights = strength * 4 * vertex_areas(V, F)[i] / squared
+    weights = strength[i] * 4 * vertex_areas(V, F)[i] / squared
     return ExtraEdges(np.column_stack([i, j]), weights)
 
 
