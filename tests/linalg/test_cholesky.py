@@ -12,7 +12,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.geometry import cotangent_laplacian, mass_matrix
 from tempose.linalg import SparseCholesky
-from tempose.linalg.triangular import scatter_rows, solve_ldl, strictly_lower
 
 HAS_CHOLESPY = importlib.util.find_spec("cholespy") is not None
 BACKENDS = ["numba", "splu"] + ["cholespy"] * HAS_CHOLESPY
@@ -170,25 +169,3 @@ def test_without_cholespy_the_message_says_how_to_install_it(monkeypatch: pytest
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ImportError, match="pip install cholespy"):
         SparseCholesky(screened(), "cholespy")
-
-
-def test_triangular_kernels_agree_with_their_dense_twins(rng) -> None:
-    n, k = 30, 4
-    lower = np.tril(rng.normal(size=(n, n)) * (rng.random((n, n)) < 0.2), -1)
-    L, d, b = lower + np.eye(n), 1 + rng.random(n), rng.normal(size=(n, k))
-    indptr, indices, data = strictly_lower(sp.csc_array(L))
-    assert len(data) == np.count_nonzero(lower)
-    X = b.copy()
-    solve_ldl(indptr, indices, data, 1 / d, X)
-    assert_allclose(X, np.linalg.solve(L @ np.diag(d) @ L.T, b), rtol=1e-9, atol=1e-9)
-    order, out = rng.permutation(n), np.zeros((n, k))
-    scatter_rows(b, order, out)
-    assert_array_equal(out[order], b)
-
-
-def test_stripping_the_diagonal_leaves_the_factor_alone() -> None:
-    L = sp.csc_array(np.array([[1.0, 0], [3, 1]]))
-    indptr, indices, data = strictly_lower(L)
-    assert_array_equal(L.toarray(), [[1, 0], [3, 1]])
-    assert_array_equal(indptr, [0, 1, 1])
-    assert_array_equal((indices, data), [[1], [3]])

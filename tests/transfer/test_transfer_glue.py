@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 from transfer_zoo import near_rotations, sheet, sphere, wxyz
 
 from tempose.geometry import cotangent_laplacian
-from tempose.transfer.glue import BLOCK, PoissonGlue
+from tempose.transfer.blocks import BLOCK, solve_blocks
+from tempose.transfer.glue import PoissonGlue
 from tempose.transfer.links import ExtraEdges
 
 
@@ -73,37 +74,35 @@ def test_blocks_come_in_order_with_their_own_frames(T: int, workers: int, rng) -
     Q = near_rotations(rng, (T,))
     out, order = np.zeros((T, n, 3)), []
 
-    def field(block: slice) -> np.ndarray:
+    def solve(block: slice) -> np.ndarray:
         # later blocks would be ready first
         time.sleep(0.002 * (T - block.start) / max(T, 1))
-        return field_of(Q[block], n)
+        return glue.solve(field_of(Q[block], n))
 
     def receive(block: slice, V: np.ndarray) -> None:
         order.append(block.start)
         assert threading.current_thread() is threading.main_thread()
         out[block] = V
 
-    glue.solve_blocks(field, T, workers, receive)
+    solve_blocks(solve, T, workers, receive)
     assert order == list(range(0, T, BLOCK))
     for t in range(T):
         assert_allclose(out[t], glue.solve(field_of(Q[t : t + 1], n))[0], rtol=0, atol=1e-12)
 
 
-def test_no_more_than_a_few_blocks_wait_in_memory(rng) -> None:
-    mesh = sheet(3)
-    glue, n = PoissonGlue(mesh.vertices, mesh.faces, ExtraEdges.none()), len(mesh.vertices)
+def test_no_more_than_a_few_blocks_wait_in_memory() -> None:
     started, received, most = [0], [0], [0]
 
-    def field(block: slice) -> np.ndarray:
+    def solve(block: slice) -> np.ndarray:
         started[0] += 1
-        return field_of(np.tile([1.0, 0, 0, 0], (BLOCK, 1)), n)
+        return np.zeros((BLOCK, 4, 3))
 
     def receive(block: slice, V: np.ndarray) -> None:
         time.sleep(0.002)
         most[0] = max(most[0], started[0] - received[0])
         received[0] += 1
 
-    glue.solve_blocks(field, 30 * BLOCK, 2, receive)
+    solve_blocks(solve, 30 * BLOCK, 2, receive)
     assert received[0] == 30
     assert most[0] <= 5
 
@@ -123,3 +122,15 @@ def test_the_input_is_left_alone(rng) -> None:
     before = q.copy()
     PoissonGlue(mesh.vertices, mesh.faces, ExtraEdges.none()).solve(q)
     assert_array_equal(q, before)
+
+
+@pytest.mark.parametrize("K", [1, 2, 8, 11])
+def test_single_precision_is_close_and_exact_at_rest(K: int, rng) -> None:
+    mesh = sphere()
+    n = len(mesh.vertices)
+    double = PoissonGlue(mesh.vertices, mesh.faces, ExtraEdges.none())
+    single = PoissonGlue(mesh.vertices, mesh.faces, ExtraEdges.none(), "single")
+    q = near_rotations(rng, (n, K)).transpose(0, 2, 1).copy()
+    assert_allclose(single.solve(q), double.solve(q), rtol=0, atol=5e-6 * mesh.diagonal)
+    rest = field_of(np.tile([1.0, 0, 0, 0], (K, 1)), n)
+    assert_array_equal(single.solve(rest), np.repeat(mesh.vertices[None] - mesh.vertices[0], K, axis=0))

@@ -10,8 +10,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from tempose.linalg.triangular import scatter_rows, solve_ldl, solve_ldl_3, strictly_lower
-from tempose.typing import FloatArray
+from tempose.linalg.block_factor import BlockFactor, block_factor
+from tempose.typing import FloatArray, IntArray
 
 Backend = Literal["numba", "splu", "cholespy"]
 _BLOCK = 96
@@ -25,9 +25,10 @@ class SparseCholesky:
     A : (n, n) sparse array
         Symmetric positive definite; both triangles stored.
     backend : {"numba", "splu", "cholespy"}, default "numba"
-        ``"numba"``: factor by SuperLU without pivoting, solve by our own kernel, fast for many sides;
-        ``"splu"``: SuperLU for both; ``"cholespy"``: CHOLMOD, where that package is installed.
-        The results agree to rounding.
+        ``"numba"``: our own, nested dissection and dense blocks; ``"splu"``: SuperLU, slower;
+        ``"cholespy"``: CHOLMOD, where that package is installed. The results agree to rounding.
+    order : (n,) int, optional
+        Order of elimination for backend "numba"; found by `nested_dissection` if not given.
 
     Raises
     ------
@@ -43,17 +44,25 @@ class SparseCholesky:
     [0.090909, 0.636364]
     """
 
-    def __init__(self, A: Any, backend: Backend = "numba") -> None:
+    def __init__(self, A: Any, backend: Backend = "numba", *, order: IntArray | None = None) -> None:
         A = sp.csc_array(A, dtype=np.float64)
         _check_symmetric(A)
         self.n = int(A.shape[0])
         self.backend: Backend = backend
         if backend == "cholespy":
             self._factor_cholespy(A)
-        elif backend in ("numba", "splu"):
+        elif backend == "splu":
             self._factor_splu(A)
+        elif backend == "numba":
+            self.factor: BlockFactor = block_factor(A, order)
+            self._check_pivots(self.factor.least_pivot)
         else:
             raise ValueError(f"backend must be 'numba', 'splu' or 'cholespy', got {backend!r}")
+
+    def _check_pivots(self, least: float) -> None:
+        # what elimination leaves of a singular matrix is rounding error of either sign
+        if not least > 10 * self.n * np.finfo(float).eps:
+            raise ValueError(_not_definite(f"smallest pivot {least:.3g} of its diagonal entry"))
 
     def _factor_splu(self, A: Any) -> None:
         options = {"SymmetricMode": True}
@@ -62,16 +71,9 @@ class SparseCholesky:
             lu = splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, relax=1, options=options)
         except RuntimeError as error:
             raise ValueError(_not_definite(f"SuperLU: {error}")) from None
-        diagonal = lu.U.diagonal()
-        # what elimination leaves of a singular matrix is rounding error of either sign
-        share = diagonal[lu.perm_c] / np.maximum(A.diagonal(), 1e-300)
-        if not np.array_equal(lu.perm_r, lu.perm_c) or not share.min() > 10 * self.n * np.finfo(float).eps:
-            raise ValueError(_not_definite(f"smallest pivot {share.min():.3g} of its diagonal entry"))
+        share = lu.U.diagonal()[lu.perm_c] / np.maximum(A.diagonal(), 1e-300)
+        self._check_pivots(float(share.min()) if np.array_equal(lu.perm_r, lu.perm_c) else -1.0)
         self._lu = lu
-        if self.backend == "numba":
-            self.indptr, self.indices, self.data = strictly_lower(lu.L)
-            self.inverse_diagonal = 1.0 / diagonal
-            self.permutation = np.asarray(lu.perm_c, dtype=np.int64)
 
     def _factor_cholespy(self, A: Any) -> None:
         if importlib.util.find_spec("cholespy") is None:
@@ -110,36 +112,21 @@ class SparseCholesky:
         b = np.asarray(b, dtype=np.float64)
         if b.ndim not in (1, 2) or b.shape[0] != self.n:
             raise ValueError(f"b must have shape ({self.n},) or ({self.n}, k), got {b.shape}")
-        columns = b.reshape(self.n, -1)
-        x = np.concatenate(
-            [self._solve_block(columns[:, c : c + _BLOCK]) for c in range(0, columns.shape[1], _BLOCK)]
-            or [columns],
-            axis=1,
-        )
-        return x.reshape(b.shape)
+        return self._solve_columns(b.reshape(self.n, -1)).reshape(b.shape)
 
-    def _solve_block(self, b: FloatArray) -> FloatArray:
-        if self.backend == "splu":
-            return self._lu.solve(np.asfortranarray(b))
-        if self.backend == "cholespy":
-            x = np.zeros(b.shape)
-            self._solver.solve(np.ascontiguousarray(b), x)
-            return x
+    def _solve_columns(self, b: FloatArray) -> FloatArray:
+        if self.backend == "numba":
+            return self.factor.solve(b)
         x = np.zeros(b.shape)
-        scatter_rows(b, self.permutation, x)
-        self.solve_ordered(x)
-        return x[self.permutation]
-
-    def solve_ordered(self, X: FloatArray) -> None:
-        """Solve in place for right-hand sides already in the order of the factor; backend "numba" only.
-
-        Parameters
-        ----------
-        X : (n, k) ndarray, C-contiguous float64
-            Row ``permutation[i]`` belongs to unknown i, before and after.
-        """
-        kernel = solve_ldl_3 if X.shape[1] == 3 else solve_ldl
-        kernel(self.indptr, self.indices, self.data, self.inverse_diagonal, X)
+        for c in range(0, b.shape[1], _BLOCK):
+            part = b[:, c : c + _BLOCK]
+            if self.backend == "splu":
+                x[:, c : c + _BLOCK] = self._lu.solve(np.asfortranarray(part))
+            else:
+                found = np.zeros(part.shape)
+                self._solver.solve(np.ascontiguousarray(part), found)
+                x[:, c : c + _BLOCK] = found
+        return x
 
 
 def _check_symmetric(A: Any) -> None:

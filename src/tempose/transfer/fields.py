@@ -30,6 +30,8 @@ class HarmonicFields:
         Which of the B rotations each carries.
     n_columns : int
         Number of rotations B.
+    order : (n,) int, optional
+        Order of elimination of L, found if not given.
 
     Raises
     ------
@@ -37,7 +39,9 @@ class HarmonicFields:
         If nothing is marked.
     """
 
-    def __init__(self, L: Any, vertices: IntArray, columns: IntArray, n_columns: int) -> None:
+    def __init__(
+        self, L: Any, vertices: IntArray, columns: IntArray, n_columns: int, order: IntArray | None = None
+    ) -> None:
         if len(vertices) == 0:
             raise ValueError("pairs must mark at least one face of the target, got none")
         n = L.shape[0]
@@ -52,7 +56,9 @@ class HarmonicFields:
         if len(self._free):
             L = sp.csr_array(L)
             self._coupling: Any = -L[self._free][:, self.known]
-            self._solver = SparseCholesky(L[self._free][:, self._free])
+            if order is not None:
+                order = (np.cumsum(is_free) - 1)[order[is_free[order]]]
+            self._solver = SparseCholesky(L[self._free][:, self._free], order=order)
         self.basis: FloatArray | None = None
         """(n, B) weights, rows sum to 1; None where B is too large to keep them."""
         if n_columns <= DENSE_COLUMNS:
