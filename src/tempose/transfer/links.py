@@ -194,7 +194,7 @@ def _opposite_vertices(V: FloatArray, normals: FloatArray, within: float = 1.0) 
     diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
     depth = _FIRST_STEP * diagonal
     while len(open_) and depth < within * diagonal:
-        near = _query(tree, V[open_] - depth * normals[open_], _NEAR)[1]
+        near = _query(tree, V[open_] - depth * normals[open_], min(_NEAR, len(V)))[1]
         distance = np.linalg.norm(V[near] - V[open_][:, None], axis=2)
         found = _faces_opposite(V, normals, open_, near, distance)
         first = np.where(found, distance, np.inf).argmin(axis=1)
