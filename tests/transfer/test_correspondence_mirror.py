@@ -41,7 +41,7 @@ def posed(mesh: Mesh) -> Mesh:
     """Bent to one side, so that no plane reflects it."""
     V = mesh.vertices
     bend = Rotation.from_rotvec(np.outer(0.8 * np.maximum(V[:, 1], 0), [0.3, 0.2, 1])).as_matrix()
-    return mesh.with_vertices(np.einsum("nij,nj->ni", bend, V) + [0.3, 0, 0])
+    return mesh.with_vertices(np.einsum("nij,nj->ni", bend, V) + np.array([0.3, 0, 0]))
 
 
 @pytest.mark.parametrize("pose", [False, True])

@@ -62,7 +62,7 @@ def test_the_centre_is_that_of_the_area() -> None:
 
 def test_only_the_loop_of_the_picked_leg() -> None:
     left, right = cylinder(), cylinder()
-    both = merged(left, right.with_vertices(right.vertices + [0.6, 0, 0]))
+    both = merged(left, right.with_vertices(right.vertices + np.array([0.6, 0, 0])))
     sections = Sections(both.vertices, both.faces)
     face = face_near(both, [0.6, 0.85, 0.25])
     point = both.vertices[both.faces[face]].mean(axis=0)

@@ -61,7 +61,7 @@ def test_the_far_side_of_a_thin_plate_is_not_taken() -> None:
         np.concatenate([grid, grid - [0, 0, 0.004]]), np.concatenate([quads, quads[:, ::-1] + k * k])
     )
     # nearer to the back of the shifted plate than to its front
-    shifted = plate.with_vertices(plate.vertices + [0, 0, 0.0035])
+    shifted = plate.with_vertices(plate.vertices + np.array([0, 0, 0.0035]))
     finder = PartnerFinder(plate, shifted, alignment=STILL)
     N = face_normals(shifted.vertices, shifted.faces)
     for face in range(0, len(quads), 41):
@@ -70,7 +70,7 @@ def test_the_far_side_of_a_thin_plate_is_not_taken() -> None:
 
 def test_marks_keep_legs_apart(body: Mesh) -> None:
     # the target stands with its legs where the source's other leg is: only the ways along the surface differ
-    aside = body.with_vertices(body.vertices + [0.17, 0, 0])
+    aside = body.with_vertices(body.vertices + np.array([0.17, 0, 0]))
     places = [
         [0.09, 0.5, 0.08],
         [0.09, 0.15, 0.05],

@@ -12,6 +12,7 @@ import tempose
 from tempose.cli import transfer_options as given
 from tempose.cli.console import note, show_json, show_table, writing
 from tempose.cli.options import Group, Json
+from tempose.cli.pairs_tools import Check, Mirror, look_over
 from tempose.cli.transfer_inputs import load_mapping, load_motion, load_target
 
 if TYPE_CHECKING:
@@ -44,10 +45,17 @@ def pairs(  # numpydoc ignore=PR01
     source_unit: given.SourceUnit = None,
     target_up: given.TargetUp = None,
     target_unit: given.TargetUnit = None,
+    check: Check = None,
+    mirror: Mirror = None,
     json: Json = False,
 ) -> None:
     """Find which faces of a still mesh belong to which joint of a motion, without a click."""
     _check_names(out, preview, weights)
+    if check is not None or mirror is not None:
+        about = {"source_options": {"up": source_up, "unit": source_unit, "clip": clip}}
+        about |= {"target_options": {"up": target_up, "unit": target_unit}}
+        look_over(source, target, check, mirror, out, json, mapping=mapping, group=group, **about)
+        return
     motion = load_motion(source, None, up=source_up, unit=source_unit, clip=clip)
     if not isinstance(motion, tempose.SkeletonClip):
         raise ValueError(

@@ -75,8 +75,9 @@ class PartnerFinder:
             several = len(here) >= _ENOUGH
             alignment = align_points(here, there) if several else align_meshes(source, target)
         self.alignment, self.kind = alignment, kind
-        same = pairs is not None and pairs.kind == kind
-        self._partners = dict(zip(np.asarray(pairs.source).tolist(), pairs.target.tolist())) if same else {}
+        self._partners: dict[int, int] = {}
+        if pairs is not None and pairs.kind == kind:
+            self._partners = dict(zip(np.asarray(pairs.source).tolist(), pairs.target.tolist()))
         V = alignment.apply(source.vertices)
         known = alignment.apply(here)
         self._warp = Warp(known, there, V, source.faces, target.vertices, target.faces)
@@ -107,7 +108,8 @@ class PartnerFinder:
         Returns
         -------
         tuple of Candidate
-            Best first, the known partner of a paired place before all; none nearer to another than 1 % of the diagonal unless they face apart.
+            Best first, the known partner of a paired place before all; none nearer to another than 1 % of
+            the diagonal unless they face apart.
 
         Raises
         ------
