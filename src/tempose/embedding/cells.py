@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tempose.embedding._marching import march
 from tempose.embedding.solid import Solid
@@ -19,16 +19,16 @@ _SEED_CELLS = 3.0
 _LEAST_KEPT = 0.85
 
 
-def make_cells(solid: Solid, walled: bool = True) -> Cells | None:
+def make_cells(solid: Solid, walls: BoolArray | None) -> Cells | None:
     """List the cells of a solid.
 
     Parameters
     ----------
     solid : Solid
         The inside of a mesh.
-    walled : bool, default True
-        Keep neighbours apart where the surface runs between them: limbs that touch or cut into each other
-        stay apart, but so do the overlapping pieces of a doll.
+    walls : (3, X, Y, Z) bool or None
+        What keeps a cell and the next along each axis apart. With those of the solid, limbs that touch or
+        cut into each other stay apart, but so do the overlapping pieces of a doll.
 
     Returns
     -------
@@ -36,18 +36,16 @@ def make_cells(solid: Solid, walled: bool = True) -> Cells | None:
         The largest piece; None when walls cut off more than 15 % of the solid.
     """
     grid = np.argwhere(solid.inside)
-    if not walled:
-        return Cells(solid, grid, False)
-    number = _numbers(solid, grid)
-    beside = _neighbours(number, grid, solid.walls)
+    if walls is None:
+        return Cells(solid, grid, None)
+    beside = _neighbours(_numbers(solid, grid), grid, walls)
     row, way = np.nonzero(beside >= 0)
     graph = sp.coo_array((np.ones(len(row), np.int8), (row, beside[row, way])), shape=(len(grid),) * 2)
     labels = connected_components(graph, directed=False)[1]
-    sizes = np.bincount(labels)
-    kept = labels == sizes.argmax()
+    kept = labels == np.bincount(labels).argmax()
     if kept.mean() < _LEAST_KEPT:
         return None
-    return Cells(solid, grid[kept], True)
+    return Cells(solid, grid[kept], walls)
 
 
 def _numbers(solid: Solid, grid: IntArray) -> IntArray:
@@ -77,8 +75,9 @@ class Cells:
     """Where they come from."""
     grid: IntArray
     """(N, 3) int, grid coordinates."""
-    walled: bool
-    """Whether the surface keeps neighbours apart, so that a hand on a thigh is not joined to it."""
+    walls: BoolArray | None
+    """(3, X, Y, Z) bool, what keeps a cell and the next along each axis apart, so that a hand on a thigh is
+    not joined to it; None for nothing."""
 
     @cached_property
     def points(self) -> FloatArray:
@@ -98,7 +97,7 @@ class Cells:
     @cached_property
     def neighbours(self) -> IntArray:
         """(N, 6) int32, neighbours along -x, +x, -y, +y, -z, +z; -1 where there is none."""
-        return _neighbours(self.number, self.grid, self.solid.walls if self.walled else None)
+        return _neighbours(self.number, self.grid, self.walls)
 
     def nearest(self, points: FloatArray) -> IntArray:
         """Inner cell nearest to each point.
@@ -113,7 +112,7 @@ class Cells:
         (k,) ndarray of int
             Places in the list.
         """
-        return cKDTree(self.points).query(points)[1]
+        return np.asarray(KDTree(self.points).query(points)[1])
 
     def distances(self, cell: int) -> FloatArray:
         """Distance from one cell through the inside.
@@ -135,7 +134,7 @@ class Cells:
         D = march(self.grid[:, 0], self.neighbours, near, away[near])
         return D * self.solid.spacing
 
-    def _joined(self, near: IntArray, cell: int) -> IntArray:
+    def _joined(self, near: IntArray, cell: int) -> BoolArray:
         inside = np.zeros(len(self.grid), dtype=np.bool_)
         inside[near] = True
         reached = np.zeros(len(self.grid), dtype=np.bool_)
@@ -146,21 +145,3 @@ class Cells:
             beside = beside[beside >= 0]
             front = np.unique(beside[inside[beside] & ~reached[beside]])
         return reached[near]
-
-
-def body_cells(solid: Solid) -> Cells:
-    """List the cells of a solid, with walls where the body is of one piece.
-
-    Parameters
-    ----------
-    solid : Solid
-        The inside of a mesh.
-
-    Returns
-    -------
-    Cells
-        With walls, unless these would cut the body apart.
-    """
-    plain = make_cells(solid) or make_cells(solid, walled=False)
-    assert plain is not None
-    return plain

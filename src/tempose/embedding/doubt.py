@@ -12,6 +12,7 @@ _CROTCH, _CROTCH_SPREAD = 0.515, 0.035
 _PIT, _PIT_SPREAD = 0.265, 0.045
 DOUBTFUL = 1.5
 """Root mean square of the penalty terms, in standard deviations, from which a body is no longer human."""
+_PITS_ALIKE = 0.025
 _CLEAR = 0.15
 _TURNED = np.cos(np.radians(50.0))
 
@@ -34,9 +35,9 @@ def whole_penalty(ends: Ends, limbs: Limbs) -> tuple[float, dict[str, float]]:
         Each term, in standard deviations of the human body.
     """
     terms = dict(ends.terms)
-    pit = (limbs.arms[0].start + limbs.arms[1].start) / 2 / ends.size
     terms["crotch"] = (limbs.legs[0].start / ends.size - _CROTCH) / _CROTCH_SPREAD
-    terms["armpits"] = (pit - _PIT) / _PIT_SPREAD
+    terms["armpits"] = (limbs.pit / ends.size - _PIT) / _PIT_SPREAD
+    terms["armpits alike"] = (limbs.arms[0].start - limbs.arms[1].start) / ends.size / _PITS_ALIKE
     return float(np.sqrt(np.mean(np.square(list(terms.values()))))) / DOUBTFUL, terms
 
 

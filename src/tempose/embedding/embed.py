@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tempose.clips import Mesh, SkinnedMesh
-from tempose.embedding.cells import Cells, body_cells
-from tempose.embedding.doubt import doubts, whole_penalty
+from tempose.embedding.attempts import Attempt, read_body
+from tempose.embedding.cells import Cells
+from tempose.embedding.doubt import doubts
 from tempose.embedding.embedding import Embedding
-from tempose.embedding.extremities import find_extremities
 from tempose.embedding.facing import axis_vector, body_frame, find_side, nearest_axis
 from tempose.embedding.fallback import average_body
 from tempose.embedding.heat import heat_weights
 from tempose.embedding.human import NAMES, SIDES
-from tempose.embedding.limbs import cut_limbs
-from tempose.embedding.place import Arm, Leg, Trunk, place_arm, place_leg, place_toes, place_trunk
-from tempose.embedding.search import Ends, choose_ends
+from tempose.embedding.place import (
+    HIPS_BACK,
+    Arm,
+    Leg,
+    Trunk,
+    centre_hips,
+    place_arm,
+    place_leg,
+    place_toes,
+    place_trunk,
+)
+from tempose.embedding.refine import refine_hinges
+from tempose.embedding.search import WAY_PER_STATURE
 from tempose.embedding.solid import make_solid
 from tempose.typing import FloatArray, Progress, silent
 
@@ -90,7 +101,7 @@ def embed_skin(
     """
     embedding, cells = _embed(mesh, up, progress)
     weights = heat_weights(mesh, embedding, cells=cells)
-    progress(5, 5, "weights")
+    progress(4, 4, "weights")
     return SkinnedMesh(mesh, embedding.skeleton, weights), embedding
 
 
@@ -98,51 +109,50 @@ def _embed(mesh: Mesh, up: str | None, progress: Progress) -> tuple[Embedding, C
     wanted = None if up is None else axis_vector(up)
     clock = _Clock()
     solid = make_solid(mesh.vertices, mesh.faces)
-    cells = body_cells(solid)
     clock.stage("inside", 1, progress)
-    found = find_extremities(cells)
-    clock.stage("extremities", 2, progress)
-    ends = choose_ends(cells, found)
-    clock.stage("search", 3, progress)
+    body = read_body(solid)
+    clock.stage("search", 2, progress)
     report: dict[str, Any] = {
-        "extremities": len(found.cells),
+        "extremities": body.n_ends,
+        "reading": body.reading,
         "gap_closed_cells": solid.bridged,
         "lost_percent": 100 * solid.lost,
-        "walls": cells.walled,
         "seconds": clock.seconds,
     }
-    if ends is None:
-        return average_body(cells, wanted, len(found.cells), report), cells
-    embedding = _placed(cells, ends, wanted, report)
-    clock.stage("place", 4, progress)
-    return embedding, cells
+    embedding = _placed(body, wanted, report) or average_body(body.cells, wanted, body.n_ends, report)
+    clock.stage("place", 3, progress)
+    return embedding, body.cells
 
 
-def _placed(cells: Cells, ends: Ends, wanted: FloatArray | None, report: dict[str, Any]) -> Embedding:
-    limbs = cut_limbs(cells, ends)
+def _placed(body: Attempt, wanted: FloatArray | None, report: dict[str, Any]) -> Embedding | None:
+    cells, ends, limbs, terms = body.cells, body.ends, body.limbs, body.terms
+    if ends is None or limbs is None or terms is None:
+        return None
     arms = _pair([place_arm(cells, limbs.arms[i], ends.size, int(ends.cells[1 + i])) for i in range(2)])
-    legs = _pair([place_leg(cells, limb, ends.size) for limb in limbs.legs])
+    legs = _pair([place_leg(cells, limb, ends.size, limbs.pit) for limb in limbs.legs])
+    legs = centre_hips(legs, limbs.trunk)
+    arms, legs = refine_hinges(limbs, arms, legs, ends.size)
     trunk = place_trunk(cells, limbs, ends, legs)
     side, clearness, votes = find_side(trunk, arms, legs)
     if (arms[0].upper_arm - arms[1].upper_arm) @ side < 0:
-        arms = arms[::-1]
+        arms = (arms[1], arms[0])
     if (legs[0].thigh - legs[1].thigh) @ side < 0:
-        legs = legs[::-1]
+        legs = (legs[1], legs[0])
     spine = trunk.neck - trunk.hips
     spine = spine / max(float(np.linalg.norm(spine)), 1e-300)
     axis = nearest_axis(spine)
     upright = float(axis_vector(axis) @ spine)
     frame = body_frame(side, axis_vector(axis) if upright > _TILTED else spine)
-    penalty, terms = whole_penalty(ends, limbs)
     report |= {
         "penalties": terms,
         "facing_votes": votes,
         "tilt_degrees": float(np.degrees(np.arccos(min(upright, 1.0)))),
-        "stature": ends.size / 1.075,
+        "stature": ends.size / WAY_PER_STATURE,
     }
-    reasons = doubts(penalty, terms, clearness, spine, wanted)
+    trunk = replace(trunk, hips=trunk.hips - HIPS_BACK * ends.size * np.cross(side, spine))
     joints, tips = _joints(trunk, arms, legs, side)
-    return Embedding(joints, tips, penalty, frame, axis, reasons, report)
+    reasons = doubts(body.penalty, terms, clearness, spine, wanted)
+    return Embedding(joints, tips, body.penalty, frame, axis, reasons, report)
 
 
 def _pair(items: list[Any]) -> tuple[Any, Any]:
@@ -175,4 +185,4 @@ class _Clock:
         now = time.perf_counter()
         self.seconds[name] = now - self._last
         self._last = now
-        progress(done, 5, name)
+        progress(done, 4, name)

@@ -48,11 +48,8 @@ def average_body(cells: Cells, up: FloatArray | None, n_ends: int, report: dict[
         Doubtful.
     """
     points = cells.points
-    if up is None:
-        up = np.eye(3)[int(np.ptp(points, axis=0).argmax())]
-        up = np.eye(3)[1] if np.ptp(points[:, 1]) > 0.9 * np.ptp(points, axis=0).max() else up
-    axes = np.eye(3)
-    others = [axis for axis in axes if abs(axis @ up) < 0.5]
+    up = _longest(points) if up is None else up
+    others = [axis for axis in np.eye(3) if abs(axis @ up) < 0.5]
     # the broader of the other two goes from side to side
     side = max(others, key=lambda axis: float(np.ptp(points @ axis)))
     frame = body_frame(side, up)
@@ -78,3 +75,8 @@ def average_body(cells: Cells, up: FloatArray | None, n_ends: int, report: dict[
     )
     joints = np.array([at[name] for name in NAMES])
     return Embedding(joints, tips, _NO_PENALTY, frame, nearest_axis(up), (reason,), report)
+
+
+def _longest(points: FloatArray) -> FloatArray:
+    extent = np.ptp(points, axis=0) * np.array([1.0, 1.1, 1.0])
+    return np.eye(3)[int(extent.argmax())]

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tempose._validate import as_floats
 from tempose.clips import Mesh, Skeleton
 from tempose.embedding._sight import sees
-from tempose.embedding.cells import Cells, body_cells
+from tempose.embedding.attempts import read_body
+from tempose.embedding.cells import Cells
 from tempose.embedding.embedding import Embedding
 from tempose.embedding.segments import bone_segments, nearest_on_segments
 from tempose.embedding.solid import make_solid
@@ -70,7 +71,7 @@ def heat_weights(mesh: Mesh, bones: Embedding | Skeleton | Any, *, cells: Cells 
     V, F = mesh.vertices[first], inverse[mesh.faces]
     F = F[(F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])]
     if cells is None:
-        cells = body_cells(make_solid(V, F))
+        cells = read_body(make_solid(V, F)).cells
     bone, distance = nearest_seen(V, segments, cells)
     return _equilibrium(V, F, bone, distance, len(segments), mesh.diagonal)[inverse]
 
@@ -95,6 +96,7 @@ def nearest_seen(V: FloatArray, segments: FloatArray, cells: Cells) -> tuple[Int
         How far it is.
     """
     solid = cells.solid
+    walls = np.zeros((3, 1, 1, 1), dtype=np.bool_) if cells.walls is None else cells.walls
     nearest, distances = nearest_on_segments(V, segments)
     order = np.argsort(distances, axis=1)[:, :_TRIED]
     bone = np.full(len(V), -1)
@@ -104,7 +106,7 @@ def nearest_seen(V: FloatArray, segments: FloatArray, cells: Cells) -> tuple[Int
         b = order[open_, rank]
         starts = (nearest[open_, b] - solid.origin) / solid.spacing
         ends = (V[open_] - solid.origin) / solid.spacing
-        seen = sees(solid.inside, solid.walls, cells.walled, starts, ends)
+        seen = sees(solid.inside, walls, cells.walls is not None, starts, ends)
         bone[open_[seen]] = b[seen]
     return bone, distances[rows, np.maximum(bone, 0)]
 
@@ -132,7 +134,7 @@ def _equilibrium(
     weights[rows] = np.maximum(SparseCholesky(A).solve(source[rows]), 0.0)
     rest = np.flatnonzero(~reached)
     if len(rest):
-        weights[rest] = weights[rows[cKDTree(V[rows]).query(V[rest])[1]]]
+        weights[rest] = weights[rows[KDTree(V[rows]).query(V[rest])[1]]]
     return weights / weights.sum(axis=1, keepdims=True)
 
 

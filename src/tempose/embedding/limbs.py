@@ -62,6 +62,11 @@ class Limbs:
     legs: tuple[Limb, Limb]
     """From the crotch."""
 
+    @property
+    def pit(self) -> float:
+        """Mean level of the armpits."""
+        return (self.arms[0].start + self.arms[1].start) / 2
+
 
 def cut_limbs(cells: Cells, ends: Ends) -> Limbs:
     """Cut a body into trunk, arms and legs.

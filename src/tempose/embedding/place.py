@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,16 +13,21 @@ from tempose.typing import FloatArray
 
 # places as shares of the way from the head to the toes, between landmarks of the body itself;
 # medians over people with known joints
-_SHOULDER_ABOVE_PIT, _SHOULDER_TO_TIP = 0.022, 0.375
+_SHOULDER_ABOVE_PIT, _SHOULDER_TO_TIP, _PIT_WEIGHT = 0.022, 0.365, 0.65
 _ELBOW_SHARE, _ELBOW_TO_TIP = 0.325, 0.238
 _WRIST_SHARE = 0.70
-_HIP_ABOVE_CROTCH, _HIP = 0.045, 0.458
+_HIP_ABOVE_CROTCH, _HIP_BELOW_PIT, _HIP = 0.045, 0.205, 0.458
+_HIP_WEIGHTS = (0.5, 0.35, 0.15)
 _ANKLE_TO_TOE = 0.108
 _KNEE_SHARE, _KNEE_TO_ANKLE = 0.445, 0.22
 _NECK_ABOVE_PIT, _HEAD_ABOVE_NECK = 0.085, 0.06
-_SPINE_SHARE = 0.16
+_SPINE_SHARE = 0.17
+_HIPS_UP = 0.008
+HIPS_BACK = 0.015
+"""How far the hip joint of most skeletons lies behind those of the thighs."""
 _FOOT_FROM = 0.03
 _BALL_SHARE = 0.36
+_CENTRED = 0.6
 
 
 @dataclass(frozen=True)
@@ -76,7 +81,8 @@ def place_arm(cells: Cells, limb: Limb, size: float, tip: int) -> Arm:
     Arm
         Shoulder, elbow, wrist and finger tip.
     """
-    shoulder = 0.5 * (limb.start - _SHOULDER_ABOVE_PIT * size) + 0.5 * (limb.end - _SHOULDER_TO_TIP * size)
+    by_pit, by_tip = limb.start - _SHOULDER_ABOVE_PIT * size, limb.end - _SHOULDER_TO_TIP * size
+    shoulder = _PIT_WEIGHT * by_pit + (1 - _PIT_WEIGHT) * by_tip
     elbow = 0.5 * (limb.start + _ELBOW_SHARE * (limb.end - limb.start)) + 0.5 * (
         limb.end - _ELBOW_TO_TIP * size
     )
@@ -86,7 +92,7 @@ def place_arm(cells: Cells, limb: Limb, size: float, tip: int) -> Arm:
     )
 
 
-def place_leg(cells: Cells, limb: Limb, size: float) -> Leg:
+def place_leg(cells: Cells, limb: Limb, size: float, pit: float) -> Leg:
     """Place the joints of a leg.
 
     Parameters
@@ -97,6 +103,8 @@ def place_leg(cells: Cells, limb: Limb, size: float) -> Leg:
         The leg from the crotch.
     size : float
         Way from the head to the feet.
+    pit : float
+        Level of the armpits.
 
     Returns
     -------
@@ -104,7 +112,8 @@ def place_leg(cells: Cells, limb: Limb, size: float) -> Leg:
         Hip joint, knee, ankle and the cells of the foot.
     """
     ankle_level = limb.end - _ANKLE_TO_TOE * size
-    hip = 0.5 * (limb.start - _HIP_ABOVE_CROTCH * size) + 0.5 * _HIP * size
+    by = (limb.start - _HIP_ABOVE_CROTCH * size, pit + _HIP_BELOW_PIT * size, _HIP * size)
+    hip = sum(weight * level for weight, level in zip(_HIP_WEIGHTS, by))
     knee = 0.5 * (limb.start + _KNEE_SHARE * (ankle_level - limb.start)) + 0.5 * (
         ankle_level - _KNEE_TO_ANKLE * size
     )
@@ -115,6 +124,28 @@ def place_leg(cells: Cells, limb: Limb, size: float) -> Leg:
         limb.at(ankle_level),
         cells.points[limb.region][foot],
     )
+
+
+def centre_hips(legs: tuple[Leg, Leg], trunk: Limb) -> tuple[Leg, Leg]:
+    """Move both hip joints sideways until the trunk ends in the middle between them.
+
+    Parameters
+    ----------
+    legs : (Leg, Leg)
+        The legs as placed.
+    trunk : Limb
+        Head to crotch.
+
+    Returns
+    -------
+    (Leg, Leg)
+        With other hip joints.
+    """
+    across = legs[0].thigh - legs[1].thigh
+    across = across / max(float(np.linalg.norm(across)), 1e-300)
+    centre = trunk.at(trunk.end - 0.15 * (trunk.end - trunk.start))
+    shift = _CENTRED * ((centre - (legs[0].thigh + legs[1].thigh) / 2) @ across) * across
+    return replace(legs[0], thigh=legs[0].thigh + shift), replace(legs[1], thigh=legs[1].thigh + shift)
 
 
 def place_toes(leg: Leg, side: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -177,12 +208,12 @@ def place_trunk(cells: Cells, limbs: Limbs, ends: Ends, legs: tuple[Leg, Leg]) -
         Hips, spine, neck, head and its top.
     """
     size = ends.size
-    pit = (limbs.arms[0].start + limbs.arms[1].start) / 2
-    neck_level = pit - _NECK_ABOVE_PIT * size
+    neck_level = limbs.pit - _NECK_ABOVE_PIT * size
     hips = (legs[0].thigh + legs[1].thigh) / 2
     neck = limbs.trunk.at(neck_level)
     head = limbs.trunk.at(neck_level - _HEAD_ABOVE_NECK * size)
     spine = hips + _SPINE_SHARE * (neck - hips)
+    hips = hips + _HIPS_UP * size * (neck - hips) / max(float(np.linalg.norm(neck - hips)), 1e-300)
     return Trunk(hips, spine, neck, head, cells.points[ends.cells[0]])
 
 

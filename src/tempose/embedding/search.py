@@ -12,6 +12,9 @@ from tempose.embedding.extremities import Extremities
 from tempose.embedding.penalties import TERMS, penalty_terms, thickness_at_ends
 from tempose.typing import FloatArray, IntArray
 
+WAY_PER_STATURE = 1.075
+"""Way from the top of the head through the body to the tip of the toes, in statures."""
+
 
 @dataclass(frozen=True)
 class Ends:

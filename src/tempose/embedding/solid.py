@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import ndimage
@@ -16,7 +17,7 @@ CELLS = 160
 _MARGIN = 5
 # an offset that no vertex of a modelled mesh hits, so that no line passes through an edge
 _SHIFT = np.array([0.4142135, 0.3178372, 0.2360679])
-_MAX_BRIDGE = 6
+_MAX_BRIDGE, _MAX_LOST = 6, 0.02
 
 
 @dataclass(frozen=True)
@@ -107,12 +108,13 @@ def winding_numbers(V: FloatArray, F: IntArray, shape: tuple[int, ...]) -> tuple
 
 def _solve_poisson(divergence: FloatArray) -> FloatArray:
     """Field of given second differences that vanishes outside the grid."""
-    spectrum = dstn(divergence, type=1, overwrite_x=True)
+    spectrum: Any = dstn(divergence, type=1, overwrite_x=True)
     laplace = np.zeros((1, 1, 1), dtype=np.float32)
     for axis, size in enumerate(divergence.shape):
         wave = 2 * np.cos(np.pi * np.arange(1, size + 1) / (size + 1)) - 2
         laplace = laplace + wave.astype(np.float32).reshape([-1 if a == axis else 1 for a in range(3)])
-    return idstn(spectrum / laplace, type=1, overwrite_x=True)
+    field: Any = idstn(spectrum / laplace, type=1, overwrite_x=True)
+    return field
 
 
 def make_solid(V: FloatArray, F: IntArray, cells: int = CELLS) -> Solid:
@@ -150,25 +152,29 @@ def make_solid(V: FloatArray, F: IntArray, cells: int = CELLS) -> Solid:
     if not inside.any():
         raise ValueError("the mesh encloses no volume; its surface may be open or folded flat")
     inside, bridged, lost = _one_piece(inside)
-    depth = ndimage.distance_transform_edt(inside) * spacing - 0.5 * spacing * inside
+    distance: Any = ndimage.distance_transform_edt(inside)
+    depth = distance * spacing - 0.5 * spacing * inside
     return Solid(inside, origin, spacing, np.maximum(depth, 0.0), walls, bridged, lost)
 
 
 def _one_piece(inside: BoolArray) -> tuple[BoolArray, int, float]:
     """Close gaps between pieces, the narrowest first, until nearly all is one."""
-    outside = None
-    solid, width = inside, 0
-    for width in range(_MAX_BRIDGE + 1):
-        if width:
-            if outside is None:
-                outside = ndimage.distance_transform_edt(~inside)
-            grown = outside <= width
-            # what growing has joined, shrunk back; the cells that were there stay
-            solid = inside | (ndimage.distance_transform_edt(grown) > width)
-        labels, count = ndimage.label(solid)
-        sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
-        largest = int(sizes.argmax())
-        lost = 1.0 - float(sizes[largest]) / float(sizes.sum())
-        if lost < 0.02:
-            break
-    return labels == largest + 1, width, lost
+    piece, lost = _largest(inside)
+    if lost < _MAX_LOST:
+        return piece, 0, lost
+    outside: Any = ndimage.distance_transform_edt(~inside)
+    for width in range(1, _MAX_BRIDGE + 1):
+        back: Any = ndimage.distance_transform_edt(outside <= width)
+        # what growing has joined, shrunk back; the cells that were there stay
+        piece, lost = _largest(inside | (back > width))
+        if lost < _MAX_LOST:
+            return piece, width, lost
+    return piece, _MAX_BRIDGE, lost
+
+
+def _largest(solid: BoolArray) -> tuple[BoolArray, float]:
+    labelled: Any = ndimage.label(solid)
+    labels = labelled[0]
+    sizes = np.bincount(labels.ravel())[1:]
+    largest = int(sizes.argmax())
+    return labels == largest + 1, 1.0 - float(sizes[largest]) / float(sizes.sum())

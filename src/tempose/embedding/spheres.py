@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from scipy import ndimage
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tempose.embedding.cells import Cells
 from tempose.typing import BoolArray, FloatArray, IntArray
@@ -98,7 +98,7 @@ def _pack(points: FloatArray, radii: FloatArray) -> BoolArray:
 
 def _touching(cells: Cells, centres: FloatArray, radii: FloatArray) -> IntArray:
     spacing = cells.solid.spacing
-    tree = cKDTree(centres)
+    tree = KDTree(centres)
     pairs = tree.query_pairs(2 * radii.max() + spacing, output_type="ndarray")
     a, b = pairs.T
     near = np.linalg.norm(centres[a] - centres[b], axis=1) <= radii[a] + radii[b] + spacing
