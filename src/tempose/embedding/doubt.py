@@ -13,7 +13,7 @@ _PIT, _PIT_SPREAD = 0.265, 0.045
 DOUBTFUL = 1.5
 """Root mean square of the penalty terms, in standard deviations, from which a body is no longer human."""
 _PITS_ALIKE = 0.025
-_CLEAR = 0.15
+_CLEAR, _RATIO = 0.15, 1.45
 _TURNED = np.cos(np.radians(50.0))
 
 
@@ -42,7 +42,7 @@ def whole_penalty(ends: Ends, limbs: Limbs) -> tuple[float, dict[str, float]]:
 
 
 def doubts(
-    penalty: float, terms: dict[str, float], clearness: float, spine: FloatArray, up: FloatArray | None
+    penalty: float, terms: dict[str, float], clearness: float, ratios: dict[str, float]
 ) -> tuple[str, ...]:
     """Say why an embedding is doubted.
 
@@ -54,10 +54,8 @@ def doubts(
         Its terms.
     clearness : float
         How sure the front is.
-    spine : (3,) float
-        Unit vector from the hips to the neck.
-    up : (3,) float or None
-        Axis that ought to point up.
+    ratios : dict of str to float
+        Longer to shorter bone of both sides, for each kind.
 
     Returns
     -------
@@ -77,11 +75,35 @@ def doubts(
             f"front and back are hard to tell: clearness {clearness:.2f}, doubtful below {_CLEAR}; "
             "left and right may be exchanged"
         )
-    if up is not None:
-        upright = float(spine @ up)
-        if upright < -_TURNED:
-            reasons.append("the body stands on its head: its spine points down")
-        elif upright < _TURNED:
-            angle = np.degrees(np.arccos(np.clip(upright, -1, 1)))
-            reasons.append(f"the body lies or leans: its spine is {angle:.0f} degrees from upright")
+    reasons += [
+        f"left and right {name} differ: {ratio:.2f} times as long, doubtful above {_RATIO}"
+        for name, ratio in ratios.items()
+        if ratio > _RATIO
+    ]
     return tuple(reasons)
+
+
+def upside(spine: FloatArray, up: FloatArray | None) -> tuple[str, ...]:
+    """Say whether a body lies or stands on its head.
+
+    Parameters
+    ----------
+    spine : (3,) float
+        Unit vector from the hips to the neck.
+    up : (3,) float or None
+        Axis that ought to point up; None for any.
+
+    Returns
+    -------
+    tuple of str
+        Empty, or one reason to doubt.
+    """
+    if up is None:
+        return ()
+    upright = float(spine @ up)
+    if upright < -_TURNED:
+        return ("the body stands on its head: its spine points down",)
+    if upright < _TURNED:
+        angle = np.degrees(np.arccos(np.clip(upright, -1, 1)))
+        return (f"the body lies or leans: its spine is {angle:.0f} degrees from upright",)
+    return ()

@@ -11,7 +11,7 @@ import numpy as np
 from tempose.clips import Mesh, SkinnedMesh
 from tempose.embedding.attempts import Attempt, read_body
 from tempose.embedding.cells import Cells
-from tempose.embedding.doubt import doubts
+from tempose.embedding.doubt import doubts, upside
 from tempose.embedding.embedding import Embedding
 from tempose.embedding.facing import axis_vector, body_frame, find_side, nearest_axis
 from tempose.embedding.fallback import average_body
@@ -31,6 +31,7 @@ from tempose.embedding.place import (
 from tempose.embedding.refine import refine_hinges
 from tempose.embedding.search import WAY_PER_STATURE
 from tempose.embedding.solid import make_solid
+from tempose.embedding.symmetry import mirror_shoulders, unlike_bones
 from tempose.typing import FloatArray, Progress, silent
 
 _TILTED = np.cos(np.radians(40.0))
@@ -131,8 +132,8 @@ def _placed(body: Attempt, wanted: FloatArray | None, report: dict[str, Any]) ->
     arms = _pair([place_arm(cells, limbs.arms[i], ends.size, int(ends.cells[1 + i])) for i in range(2)])
     legs = _pair([place_leg(cells, limb, ends.size, limbs.pit) for limb in limbs.legs])
     legs = centre_hips(legs, limbs.trunk)
-    arms, legs = refine_hinges(limbs, arms, legs, ends.size)
     trunk = place_trunk(cells, limbs, ends, legs)
+    arms, legs = refine_hinges(limbs, mirror_shoulders(arms, legs, trunk, ends.size), legs, ends.size)
     side, clearness, votes = find_side(trunk, arms, legs)
     if (arms[0].upper_arm - arms[1].upper_arm) @ side < 0:
         arms = (arms[1], arms[0])
@@ -151,7 +152,9 @@ def _placed(body: Attempt, wanted: FloatArray | None, report: dict[str, Any]) ->
     }
     trunk = replace(trunk, hips=trunk.hips - HIPS_BACK * ends.size * np.cross(side, spine))
     joints, tips = _joints(trunk, arms, legs, side)
-    reasons = doubts(body.penalty, terms, clearness, spine, wanted)
+    ratios = unlike_bones(arms, legs)
+    report["side_ratios"] = ratios
+    reasons = doubts(body.penalty, terms, clearness, ratios) + upside(spine, wanted)
     return Embedding(joints, tips, body.penalty, frame, axis, reasons, report)
 
 
