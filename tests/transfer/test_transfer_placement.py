@@ -7,7 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from tempose.transfer.placement import fit_scale, place_clip
+from tempose.transfer.placement import fit_scale as fit_scale_of
+from tempose.transfer.placement import place_clip
+from tempose.transfer.soles import find_sole
 
 T, FPS, HEIGHT, SCALE = 120, 30.0, 1.7, 0.63
 STRIDE = 30
@@ -33,6 +35,13 @@ def walker(scale: float = SCALE, bob: float = 0.0) -> tuple[np.ndarray, list[np.
         contact[:, f] = (phase >= 1) & (phase < 19)
         soles.append(foot[:, None] + patch - world[:, None])
     return path, soles, contact
+
+
+def fit_scale(
+    path: np.ndarray, soles: list[np.ndarray], contact: np.ndarray, height: float, fps: float
+) -> float | None:
+    found = [find_sole(foot, contact[:, f], height, fps) for f, foot in enumerate(soles)]
+    return fit_scale_of(path, found, height, fps)
 
 
 def on_the_ground(soles: list[np.ndarray], shift: np.ndarray) -> list[np.ndarray]:

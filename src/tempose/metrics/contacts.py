@@ -50,6 +50,8 @@ def velocities(points: FloatArray, fps: float, window: float = WINDOW) -> FloatA
 
 
 def _sample(points: FloatArray, frame: FloatArray) -> FloatArray:
+    if not (frame % 1).any():
+        return points[frame.astype(int)]
     low = np.minimum(frame.astype(int), len(points) - 2)
     s = (frame - low)[:, None, None]
     return (1 - s) * points[low] + s * points[low + 1]

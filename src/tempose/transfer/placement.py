@@ -9,7 +9,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from tempose.linalg import SparseCholesky
-from tempose.metrics import sole_velocities
 from tempose.transfer.foot_hold import FADE, hold_feet
 from tempose.transfer.ground_plane import lift_above
 from tempose.transfer.soles import HORIZONTAL, Sole, find_sole
@@ -88,12 +87,12 @@ def place_clip(
     over contact frames. The root takes the smooth share of what is left, by least squares over all feet; the
     rest is taken by each foot alone, exactly.
     """
-    scale = fit_scale(anchor, soles, contact, height, fps)
+    levels = np.zeros(len(soles)) if levels is None else levels
+    found = [find_sole(foot, contact[:, f], height, fps, levels[f]) for f, foot in enumerate(soles)]
+    scale = fit_scale(anchor, found, height, fps)
     fitted = scale is not None
     scale = leg_ratio if scale is None else scale
     shift = anchor * np.array([scale, leg_ratio, scale])
-    levels = np.zeros(len(soles)) if levels is None else levels
-    found = [find_sole(foot, contact[:, f], height, fps, levels[f]) for f, foot in enumerate(soles)]
     correction = 0.0
     if hold and soles:
         steps = root_steps(found, shift, fps)
@@ -106,19 +105,15 @@ def place_clip(
     return Placement(shift, feet, float(scale), leg_ratio, fitted, correction)
 
 
-def fit_scale(
-    anchor: FloatArray, soles: Sequence[FloatArray], contact: BoolArray, height: float, fps: float
-) -> float | None:
+def fit_scale(anchor: FloatArray, soles: Sequence[Sole], height: float, fps: float) -> float | None:
     """Horizontal scale at which feet in contact slide least.
 
     Parameters
     ----------
     anchor : (T, 3) float
         Path of the source's anchor, metres.
-    soles : list of (T, k, 3) float
-        Vertices of each target foot with the anchor held.
-    contact : (T, f) bool
-        Contacts.
+    soles : sequence of Sole
+        Those of the target, found with the anchor held.
     height : float
         Height of the target, metres.
     fps : float
@@ -129,19 +124,20 @@ def fit_scale(
     float or None
         The scale; None where the body hardly travels in contact or the fit is absurd.
     """
-    if len(anchor) < 3 or not soles:
+    if len(anchor) < 3:
         return None
-    hip = sole_velocities(anchor[:, None, :], height, fps)[:, HORIZONTAL]
     against = along = 0.0
-    for f, foot in enumerate(soles):
-        mine = contact[:, f]
-        v = sole_velocities(foot, height, fps)[mine][:, HORIZONTAL]
-        against -= float((v * hip[mine]).sum())
-        along += float((hip[mine] ** 2).sum())
+    count = 0
+    for sole in soles:
+        span = (sole.windows @ np.arange(len(anchor), dtype=np.float64))[:, None] / fps
+        hip, foot = sole.windows @ anchor[:, HORIZONTAL] / span, sole.travel / span
+        against -= float((foot * hip).sum())
+        along += float((hip**2).sum())
+        count += len(hip)
     if along <= 0 or against <= 0:
         return None
     scale = against / along
-    travel = scale * np.sqrt(along / int(contact.sum()))
+    travel = scale * np.sqrt(along / count)
     return scale if travel > _LEAST_TRAVEL * height else None
 
 
