@@ -12,7 +12,8 @@ from tempose.typing import IntArray
 
 LEAF = 32
 """Regions of at most so many vertices are ordered by minimum degree (at most 64: one bit a vertex)."""
-SWEEPS = 20
+SWEEPS = 6
+RELAXATION = 1.5
 SMALLEST_SIDE = 0.1
 
 
@@ -154,7 +155,7 @@ def _end_to_end(indptr: Any, indices: Any, region: Any, order: Any, queue: Any, 
     """Fill f, over a region, with a smooth function that falls from one end to the other."""
     size = len(order)
     label = region[order[0]]
-    _levels(indptr, indices, region, order[0], queue, 0, f)
+    # the search that found the region connected left its furthest vertex last
     _levels(indptr, indices, region, queue[size - 1], queue, 0, g)
     _levels(indptr, indices, region, queue[size - 1], queue, 0, f)
     for p in range(size):
@@ -168,7 +169,7 @@ def _end_to_end(indptr: Any, indices: Any, region: Any, order: Any, queue: Any, 
                 if region[u] == label:
                     total += f[u]
                     k += 1
-            f[v] = total / k
+            f[v] += RELAXATION * (total / k - f[v])
         order[:] = order[::-1].copy()
 
 

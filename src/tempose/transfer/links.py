@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from tempose.geometry import cotangent_laplacian, vertex_areas, vertex_normals
+from tempose.transfer.thin import facing_through
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 LINK_WEIGHT = 5.0
@@ -176,14 +177,15 @@ def shell_edges(V: FloatArray, F: IntArray) -> ExtraEdges:
     """
     if len(F) == 0:
         return ExtraEdges.none()
-    partner = _opposite_vertices(V, vertex_normals(V, F), SHELL)
+    radius = SHELL * float(np.linalg.norm(np.ptp(V, axis=0)))
+    partner = facing_through(V, vertex_normals(V, F), radius)
     i = np.flatnonzero(partner >= 0)
     pairs = np.unique(np.sort(np.column_stack([i, partner[i]]), axis=1), axis=0).reshape(-1, 2)
     return ExtraEdges(pairs, np.full(len(pairs), LINK_WEIGHT))
 
 
-def _opposite_vertices(V: FloatArray, normals: FloatArray, within: float = 1.0) -> IntArray:
-    """Nearest vertex inwards, not further than a share of the diagonal, that faces the other way; else -1.
+def _opposite_vertices(V: FloatArray, normals: FloatArray) -> IntArray:
+    """Nearest vertex inwards that faces the other way, -1 where there is none.
 
     Found by marching inwards along the normal in growing steps: the search for all vertices costs a few
     dozen nearest-neighbour queries each, whatever the thickness of the body.
@@ -193,12 +195,12 @@ def _opposite_vertices(V: FloatArray, normals: FloatArray, within: float = 1.0) 
     open_ = np.flatnonzero(np.linalg.norm(normals, axis=1) > 0.5)
     diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
     depth = _FIRST_STEP * diagonal
-    while len(open_) and depth < within * diagonal:
+    while len(open_) and depth < diagonal:
         near = _query(tree, V[open_] - depth * normals[open_], min(_NEAR, len(V)))[1]
         distance = np.linalg.norm(V[near] - V[open_][:, None], axis=2)
         found = _faces_opposite(V, normals, open_, near, distance)
         first = np.where(found, distance, np.inf).argmin(axis=1)
-        hit = found.any(axis=1) & (distance[np.arange(len(open_)), first] < within * diagonal)
+        hit = found.any(axis=1)
         partner[open_[hit]] = near[hit, first[hit]]
         open_ = open_[~hit]
         depth *= _GROWTH
