@@ -12,14 +12,17 @@ from tempose.rotations import multiply
 from tempose.transfer.alignment import align_reference
 from tempose.transfer.bones import Bones, make_bones, split_role
 from tempose.transfer.columns import Columns
+from tempose.transfer.fabric import Fabric, weave
 from tempose.transfer.facing import UP
 from tempose.transfer.feet import Feet, bone_feet, flat_stance
+from tempose.transfer.geodesic_path import path_columns
 from tempose.transfer.joint_patches import inner_strengths, joint_patches, volume_fill
 from tempose.transfer.lead import LEAD, learn_lead
 from tempose.transfer.motion_transfer import Anchor, MotionTransfer
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.pose import BonePose
 from tempose.transfer.reference import Reference, bone_motion, choose_reference
+from tempose.transfer.references import References, Singular
 from tempose.transfer.signs import consistent_signs
 from tempose.transfer.skin_pairs import estimate_joints
 from tempose.transfer.twist_columns import twist_columns
@@ -58,6 +61,8 @@ class Prepared:
     """First frame of the source that is motion."""
     warnings: tuple[str, ...] = ()
     """What is doubtful."""
+    references: References | None = None
+    """Frames that serve as reference pose beside the rest."""
 
 
 def prepare_skeleton(
@@ -71,6 +76,8 @@ def prepare_skeleton(
     volume: float = 0.0,
     twist: bool = True,
     lead: float = LEAD,
+    singular: Singular = "reference",
+    fabric: Fabric | None = None,
 ) -> Prepared:
     """Do everything that comes before the frames.
 
@@ -94,6 +101,10 @@ def prepare_skeleton(
         Whether forearms, upper arms and thighs take up the twist at their ends little by little.
     lead : float, default 0.6
         Share of the limbs' lag behind their bones that is made up for, see `Lead`.
+    singular : {"reference", "path", "none"}, default "reference"
+        What is done where a bone turns by half a turn against its parent; paths are laid here.
+    fabric : Fabric, optional
+        See `MotionTransfer`.
 
     Returns
     -------
@@ -107,11 +118,9 @@ def prepare_skeleton(
     """
     roles = find_roles(clip.skeleton, mapping)
     bones = make_bones(clip.skeleton, tuple(dict.fromkeys(pairs.source)), roles)  # type: ignore[arg-type]
-    column = np.array([bones.names.index(str(name)) for name in pairs.source])
-    solver, columns, target = _solver(mesh, pairs, bones, column, volume, twist)
-    basis = solver.basis
-    assert basis is not None
-    basis = columns.of_bones(basis)
+    marks = np.array([bones.names.index(str(name)) for name in pairs.source])
+    fabric = fabric or weave(mesh)
+    target = _target_pose(mesh, bones, pairs, marks, fabric)
     reference = _reference(clip, bones, roles, target, rest_clip, rest_frame)
     moving = clip.frames(slice(reference.first_frame, None))
     motion = bone_motion(moving, bones, roles)
@@ -119,6 +128,11 @@ def prepare_skeleton(
     standing = flat_stance(bones, motion, height, clip.fps)
     K = align_reference(bones, motion, reference.pose, target, standing, reference.upright)
     Q = consistent_signs(multiply(motion.turns, K), bones.parents)
+    far = Q if singular == "path" else None
+    solver, columns = _solver(mesh, pairs, bones, marks, target, volume, twist, far, fabric)
+    basis = solver.basis
+    assert basis is not None
+    basis = columns.of_bones(basis)
     solver.anchor = _pelvis(mesh, basis, bones, target)
     owner = basis.argmax(axis=1)
     solver.fill = volume_fill(solver, joint_patches(solver, bones, target, owner), volume)
@@ -167,24 +181,42 @@ def _reference(
 
 
 def _solver(
-    mesh: Mesh, pairs: Pairs, bones: Bones, column: IntArray, volume: float, twist: bool
-) -> tuple[MotionTransfer, Columns, BonePose]:
-    marked, B = mesh.faces[pairs.target], len(bones.names)
-    basis = None
-    if not all(name in pairs.joints and name in pairs.ends for name in bones.names):
-        basis = MotionTransfer(mesh, marked.ravel(), np.repeat(column, 3), B).basis
-    target = _target_pose(mesh, basis, bones, pairs)
-    columns = Columns(B)
+    mesh: Mesh,
+    pairs: Pairs,
+    bones: Bones,
+    marks: IntArray,
+    target: BonePose,
+    volume: float,
+    twist: bool,
+    far: FloatArray | None,
+    fabric: Fabric,
+) -> tuple[MotionTransfer, Columns]:
+    marked = mesh.faces[pairs.target]
+    columns, of_mark = Columns(len(bones.names)), marks
     if twist:
-        columns, column = twist_columns(bones, target, mesh.vertices[marked].mean(axis=1), column)
+        columns, of_mark = twist_columns(bones, target, mesh.vertices[marked].mean(axis=1), marks)
+    vertices, of_vertex = marked.ravel(), np.repeat(of_mark, 3)
+    if far is not None:
+        spread = frozenset(e.second for e in columns.between)
+        between, along, station = path_columns(
+            mesh.vertices, mesh.faces, vertices, np.repeat(marks, 3), bones.parents, far, spread
+        )
+        vertices = np.concatenate([vertices, along])
+        of_vertex = np.concatenate([of_vertex, len(columns) + station])
+        columns = Columns(columns.n_bones, columns.between + between)
     strengths = inner_strengths([bones.roles[b] for b in columns.bones], volume)
-    solver = MotionTransfer(mesh, marked.ravel(), np.repeat(column, 3), len(columns), volume=strengths)
-    return solver, columns, target
+    solver = MotionTransfer(mesh, vertices, of_vertex, len(columns), volume=strengths, fabric=fabric)
+    return solver, columns
 
 
-def _target_pose(mesh: Mesh, basis: FloatArray | None, bones: Bones, pairs: Pairs) -> BonePose:
+def _target_pose(
+    mesh: Mesh, bones: Bones, pairs: Pairs, marks: IntArray, fabric: Fabric
+) -> BonePose:
     starts, ends = np.zeros((2, len(bones.names), 3))
-    if basis is not None:
+    if not all(name in pairs.joints and name in pairs.ends for name in bones.names):
+        marked = mesh.faces[pairs.target].ravel()
+        basis = MotionTransfer(mesh, marked, np.repeat(marks, 3), len(bones.names), fabric=fabric).basis
+        assert basis is not None
         starts, ends = estimate_joints(mesh.vertices, basis, bones.parents)
     for b, name in enumerate(bones.names):
         if name in pairs.joints:

@@ -11,7 +11,9 @@ from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
 from tempose.kinematics.roles import find_roles
 from tempose.transfer.from_mesh import prepare_mesh
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
+from tempose.transfer.lead import LEAD
 from tempose.transfer.pairs import Pairs
+from tempose.transfer.references import Singular
 from tempose.transfer.skin_pairs import pairs_from_skin
 from tempose.transfer.upright import stand_up, turned_pairs
 from tempose.typing import FloatArray
@@ -170,6 +172,9 @@ def prepare(
     rest: SkeletonClip | Mesh | None = None,
     rest_frame: int | None = None,
     volume: float = 0.0,
+    twist: bool = True,
+    lead: float = LEAD,
+    singular: Singular = "reference",
 ) -> Prepared:
     """Do everything that comes before the frames, for either kind of source.
 
@@ -189,6 +194,12 @@ def prepare(
         Frame of the reference pose, in `rest` or else in the source.
     volume : float, default 0
         See `MotionTransfer`.
+    twist : bool, default True
+        See `prepare_skeleton`; means nothing to a mesh source, nor do the next two.
+    lead : float, default 0.6
+        See `prepare_skeleton`.
+    singular : {"reference", "path", "none"}, default "reference"
+        See `prepare_skeleton`.
 
     Returns
     -------
@@ -204,7 +215,16 @@ def prepare(
         if isinstance(rest, Mesh):
             raise ValueError("source_rest must be a motion clip of the same skeleton, got a mesh")
         return prepare_skeleton(
-            source, mesh, pairs, mapping=mapping, rest_clip=rest, rest_frame=rest_frame, volume=volume
+            source,
+            mesh,
+            pairs,
+            mapping=mapping,
+            rest_clip=rest,
+            rest_frame=rest_frame,
+            volume=volume,
+            twist=twist,
+            lead=lead,
+            singular=singular,
         )
     if isinstance(rest, SkeletonClip):
         raise ValueError("source_rest must be a mesh like the source, got a skeleton clip")

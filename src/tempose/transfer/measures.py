@@ -17,6 +17,7 @@ from tempose.transfer.joint_regressor import apply_regressor, regress_points
 from tempose.transfer.marks import RIGID_PARTS
 from tempose.transfer.motion_transfer import MotionTransfer
 from tempose.transfer.pose import BonePose
+from tempose.transfer.references import References
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 LIMB_BONES = ("upper_arm", "forearm", "thigh", "shin")
@@ -26,7 +27,11 @@ _BLOCK = 16
 
 
 def distortion_measures(
-    solver: MotionTransfer, V: FloatArray, Q: FloatArray, faces: BoolArray | None
+    solver: MotionTransfer,
+    V: FloatArray,
+    Q: FloatArray,
+    faces: BoolArray | None,
+    references: References | None = None,
 ) -> dict[str, Any]:
     """Measure the surface of a transferred clip.
 
@@ -40,20 +45,24 @@ def distortion_measures(
         The rotations it was given.
     faces : (m,) bool or None
         Faces that count for the edge ratios; parts that move rigidly would hide everything.
+    references : References, optional
+        Reference poses it was given beside the rest.
 
     Returns
     -------
     dict
         ``edge_ratio`` [p1, p99], ``edge_ratio_max``, ``flipped_percent`` and ``folded_percent`` (means over
         frames), ``volume`` (percent change a frame; None for a surface that encloses nothing),
-        ``quaternion_norm_min``.
+        ``quaternion_norm_min``, and for every frame ``quaternion_norm`` with the ``quaternion_vertex`` that
+        has it.
     """
     F, V_rest = solver.mesh.faces, solver.mesh.vertices
     ratios = edge_ratios(V, F, V_rest, faces=faces)
-    flipped, norms = np.zeros(len(V)), np.ones(len(V))
+    flipped, norms, where = np.zeros(len(V)), np.ones(len(V)), np.zeros(len(V), dtype=np.int64)
     for t in range(0, len(V), _BLOCK):
-        q = solver.field(Q[t : t + _BLOCK]).transpose(2, 0, 1)
-        norms[t : t + _BLOCK] = np.linalg.norm(q, axis=-1).min(axis=1)
+        q = solver.field(Q[t : t + _BLOCK], references, t).transpose(2, 0, 1)
+        length = np.linalg.norm(q, axis=-1)
+        norms[t : t + _BLOCK], where[t : t + _BLOCK] = length.min(axis=1), length.argmin(axis=1)
         turns = normalise(q[:, F].sum(axis=2))
         flipped[t : t + _BLOCK] = flipped_percent(V[t : t + _BLOCK], F, V_rest, turns)
     return {
@@ -63,6 +72,8 @@ def distortion_measures(
         "folded_percent": float(folded_percent(V, F, V_rest).mean()),
         **_volume_measures(V, F, V_rest),
         "quaternion_norm_min": float(norms.min()),
+        "quaternion_norm": norms,
+        "quaternion_vertex": where,
     }
 
 

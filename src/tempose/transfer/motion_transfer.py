@@ -9,15 +9,15 @@ import numpy as np
 
 from tempose._validate import as_floats, as_indices
 from tempose.clips import Mesh
-from tempose.geometry import cotangent_laplacian, edge_laplacian, weld
-from tempose.linalg.ordering import nested_dissection
 from tempose.rotations import conjugate, multiply, rotate, to_matrix
 from tempose.transfer.blocks import solve_blocks
+from tempose.transfer.fabric import Fabric, weave
 from tempose.transfer.fields import HarmonicFields
 from tempose.transfer.fill import VolumeFill
 from tempose.transfer.frame_kernels import spread_1, spread_8, write_frames
 from tempose.transfer.glue import LANES, PoissonGlue, Precision
-from tempose.transfer.links import inner_edges, link_pieces, shell_edges
+from tempose.transfer.links import inner_edges
+from tempose.transfer.references import References
 from tempose.transfer.welded import Welded
 from tempose.typing import FloatArray, IntArray
 
@@ -61,6 +61,10 @@ class MotionTransfer:
         In which frames are solved. Single is faster and drifts from double by less than 5e-6 of the height;
         in both the identity gives the rest pose to rounding of double.
 
+    fabric : Fabric, optional
+        What `tempose.transfer.fabric.weave` made of this very mesh before; saves most of the set-up when only
+        marks change.
+
     Raises
     ------
     ValueError
@@ -89,6 +93,7 @@ class MotionTransfer:
         anchor: Anchor | None = None,
         workers: int = 2,
         precision: Precision = "double",
+        fabric: Fabric | None = None,
     ) -> None:
         if precision not in ("double", "single"):
             raise ValueError(f"precision must be 'double' or 'single', got {precision!r}")
@@ -97,19 +102,16 @@ class MotionTransfer:
         if len(mesh.faces) < 2 or mesh.diagonal == 0:
             raise ValueError(f"target must be a surface of at least 2 triangles, got {len(mesh.faces)}")
         self.mesh, self.n_bones, self.workers = mesh, n_bones, workers
-        first, self._inverse = weld(mesh.vertices)
-        V, F = mesh.vertices[first], self._inverse[mesh.faces]
-        self.links = link_pieces(V, F)
-        field_matrix = cotangent_laplacian(V, F, clamp=True) + edge_laplacian(
-            self.links.pairs, self.links.weights, len(V)
+        if fabric is None or fabric.mesh is not mesh:
+            fabric = weave(mesh)
+        V, F, first, order = fabric.V, fabric.F, fabric.first, fabric.order
+        self._inverse, self.links = fabric.inverse, fabric.links
+        self.fields = HarmonicFields(
+            fabric.field_matrix, self._inverse[vertices], bones, n_bones, fabric.order
         )
-        field_matrix = field_matrix + edge_laplacian(*_slight_edges(F), len(V))
-        order = nested_dissection(field_matrix)
-        self.fields = HarmonicFields(field_matrix, self._inverse[vertices], bones, n_bones, order)
         inner = inner_edges(V, F, self._strengths(volume))
-        extra = shell_edges(V, F) + inner
-        # the order of one matrix serves the other where it has no edges of its own
-        self._glue = PoissonGlue(V, F, self.links + extra, precision, None if len(extra.pairs) else order)
+        extra = self.links + fabric.shell + inner
+        self._glue = PoissonGlue(V, F, extra, precision, None if len(inner.pairs) else order)
         self._rows = self._glue.rows[self._inverse]
         self._rest = mesh.vertices - mesh.vertices[0]
         if self.fields.basis is not None:
@@ -131,8 +133,30 @@ class MotionTransfer:
         basis = self.fields.basis
         return None if basis is None else basis[self._inverse]
 
-    def field(self, Q: FloatArray) -> FloatArray:
+    def field(self, Q: FloatArray, references: References | None = None, start: int = 0) -> FloatArray:
         """Spread rotations over the mesh.
+
+        Parameters
+        ----------
+        Q : (T, B, 4) float
+            Unit quaternions with agreeing signs.
+        references : References, optional
+            Reference poses of the clip from which these frames are, if there are others than the rest.
+        start : int, default 0
+            Which frame of that clip is the first.
+
+        Returns
+        -------
+        (n, 4, T) ndarray
+            Quaternion field at the vertices, not normalised: a short one tells of rotations that contradict
+            each other.
+        """
+        if references is not None:
+            return references.field(self.spread, slice(start, start + len(Q)))[self._inverse]
+        return self.spread(Q)[self._inverse]
+
+    def spread(self, Q: FloatArray) -> FloatArray:
+        """Spread rotations over the welded mesh.
 
         Parameters
         ----------
@@ -141,12 +165,11 @@ class MotionTransfer:
 
         Returns
         -------
-        (n, 4, T) ndarray
-            Quaternion field at the vertices, not normalised: a short one tells of rotations that contradict
-            each other.
+        (w, 4, T) ndarray
+            Quaternion field at the vertices of ``welded``, not normalised.
         """
         columns = Q.transpose(1, 2, 0).reshape(self.n_bones, 4 * len(Q))
-        return self.fields.interpolate(columns).reshape(-1, 4, len(Q))[self._inverse]
+        return self.fields.interpolate(columns).reshape(-1, 4, len(Q))
 
     def pose(self, Q: FloatArray, place: FloatArray | None = None) -> FloatArray:
         """Move the mesh.
@@ -182,7 +205,12 @@ class MotionTransfer:
             out += (as_floats(place, "place", (*lead, 3)).reshape(-1, 3) - self.anchor.point)[:, None]
         return out.reshape(*lead, *out.shape[1:])
 
-    def pose_blocks(self, Q: FloatArray, receive: Callable[[slice, FloatArray], None]) -> None:
+    def pose_blocks(
+        self,
+        Q: FloatArray,
+        receive: Callable[[slice, FloatArray], None],
+        references: References | None = None,
+    ) -> None:
         """Move the mesh through a clip, some frames at a time, so that memory stays bounded.
 
         Parameters
@@ -191,13 +219,24 @@ class MotionTransfer:
             Rotations with agreeing signs.
         receive : callable
             Called in order with a slice of frames and their (K, n, 3) vertices, the anchor at its rest place.
+        references : References, optional
+            Reference poses other than the rest (`choose_references`).
         """
-        solve_blocks(lambda block: self._solve(Q[block]), len(Q), self.workers, receive)
 
-    def _solve(self, Q: FloatArray) -> FloatArray:
+        def solve(block: slice) -> FloatArray:
+            return self._solve(Q[block], references.field(self.spread, block) if references else None)
+
+        solve_blocks(solve, len(Q), self.workers, receive)
+
+    def _solve(self, Q: FloatArray, field: FloatArray | None = None) -> FloatArray:
         # what all bones share is applied at the end: large turns of the whole cost no accuracy
         common = _common_rotation(Q)
-        u = self._glue.displacements(self._spread(multiply(conjugate(common)[:, None], Q)))
+        if field is None:
+            rows = self._spread(multiply(conjugate(common)[:, None], Q))
+        else:
+            turned = multiply(conjugate(common), np.moveaxis(field, 1, 2))
+            rows = self._glue.in_rows(np.moveaxis(turned, 1, 2))
+        u = self._glue.displacements(rows)
         goal = np.tile(self.anchor.point, (len(Q), 1))
         if self.anchor.bone is not None:
             arm = self.anchor.point - self.anchor.weights @ self.mesh.vertices
@@ -233,13 +272,6 @@ def _common_rotation(Q: FloatArray) -> FloatArray:
     mean = Q.mean(axis=1)
     mean = np.where(np.linalg.norm(mean, axis=1, keepdims=True) > 0.1, mean, Q[:, 0])
     return mean / np.linalg.norm(mean, axis=1, keepdims=True)
-
-
-def _slight_edges(F: IntArray) -> tuple[IntArray, FloatArray]:
-    # clamped weights may leave a vertex without any: a trace of the graph Laplacian keeps it attached
-    edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    return edges, np.full(len(edges), 1e-7)
 
 
 def _centroid_anchor(mesh: Mesh, vertices: IntArray) -> Anchor:

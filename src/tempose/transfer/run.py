@@ -14,6 +14,7 @@ from tempose.transfer.adjustments.groups import group_by_part
 from tempose.transfer.adjustments.on_result import adjust
 from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
+from tempose.transfer.lead import LEAD
 from tempose.transfer.matching import Matched, match, prepare
 from tempose.transfer.measuring import add_measures
 from tempose.transfer.pairs import Pairs
@@ -25,6 +26,7 @@ from tempose.transfer.placing import (
     place_frames,
     with_contacts,
 )
+from tempose.transfer.references import Singular, choose_references
 from tempose.transfer.result import TransferResult
 from tempose.transfer.template import template_clip
 from tempose.typing import FloatArray, Progress, silent
@@ -50,6 +52,9 @@ def transfer_motion(
     source_rest: SkeletonClip | Mesh | None = None,
     rest_frame: int | None = None,
     volume: float = 0.0,
+    twist: bool = True,
+    lead: float = LEAD,
+    singular: Singular = "reference",
     contacts: Contacts = True,
     ground: float | None = None,
     measure: bool = True,
@@ -77,7 +82,16 @@ def transfer_motion(
     rest_frame : int, optional
         Frame of the reference pose, in `source_rest` or else in the source.
     volume : float, default 0
-        Strength of the inner edges that hold the volume at bends.
+        How much of the volume that bends cost is kept: 1 for all of it, by inner edges and by skin pushed out
+        round shoulders, elbows, hips and knees.
+    twist : bool, default True
+        Whether forearms, upper arms and thighs take up the twist at their ends little by little.
+    lead : float, default 0.6
+        Share of the lag of limbs behind their bones that is made up for; 1 points them exactly where the
+        source's point and stretches skin more.
+    singular : {"reference", "path", "none"}, default "reference"
+        What is done where a limb turns further than rotations can be interpolated: a previous frame becomes
+        the reference pose, or shortest paths over the surface carry the rotation along.
     contacts : bool, mapping or (T, f) bool, default True
         Whether feet stand still, and on the ground, while they are in contact; or the contacts themselves, if
         not those found in the source: ``{"left_foot": [[0, 10], ...]}``, intervals of the source's frames
@@ -118,7 +132,12 @@ def transfer_motion(
         rest=source_rest,
         rest_frame=rest_frame,
         volume=volume,
+        twist=twist,
+        lead=lead,
+        singular=singular,
     )
+    if singular == "reference":
+        job = replace(job, references=choose_references(job.solver.spread, job.rotations))
     job = with_contacts(job, contacts, source.n_frames, ground)
     group_by_part(job, adjustments, len(job.rotations), source.fps)
     clock.lap("set-up")
@@ -149,7 +168,7 @@ def _solve(job: Prepared, progress: Progress, scratch: str | os.PathLike[str] | 
         release(V)
         progress(min(block.stop, T), T, "frames")
 
-    job.solver.pose_blocks(job.rotations, receive)
+    job.solver.pose_blocks(job.rotations, receive, job.references)
     return V
 
 
