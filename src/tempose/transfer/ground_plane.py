@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.transfer.bones import Bones
-from tempose.transfer.frames import BLOCK
+from tempose.transfer.frames import BLOCK, release
 from tempose.transfer.legs import Leg, bone_leg
 from tempose.transfer.limb_ik import bones_below
 from tempose.transfer.pose import BonePose
@@ -59,6 +59,7 @@ def lowest(V: FloatArray, vertices: IntArray) -> FloatArray:
     low = np.zeros(len(V))
     for t in range(0, len(V), BLOCK):
         low[t : t + BLOCK] = V[t : t + BLOCK][:, vertices, 1].min(axis=1)
+        release(V)
     return low
 
 

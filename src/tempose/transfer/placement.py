@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from tempose.linalg import SparseCholesky
 from tempose.transfer.foot_hold import FADE, hold_feet
 from tempose.transfer.ground_plane import lift_above
-from tempose.transfer.soles import HORIZONTAL, Sole, find_sole
+from tempose.transfer.soles import HORIZONTAL, FootFrames, Sole, find_sole
 from tempose.transfer.steady_path import second_differences
 from tempose.typing import BoolArray, FloatArray
 
@@ -41,7 +41,7 @@ class Placement:
 
 def place_clip(
     anchor: FloatArray,
-    soles: Sequence[FloatArray],
+    soles: Sequence[FloatArray | FootFrames],
     contact: BoolArray,
     ground: float,
     height: float,
@@ -57,7 +57,7 @@ def place_clip(
     ----------
     anchor : (T, 3) float
         Movement of the source's anchor away from its reference place, metres.
-    soles : list of (T, k, 3) float
+    soles : list of (T, k, 3) float or FootFrames
         Vertices of each target foot, in frames whose anchor stands at its rest place.
     contact : (T, f) bool
         Contacts of the source's feet.

@@ -12,11 +12,11 @@ from tempose.metrics import foot_acceleration
 from tempose.transfer.contacts import Intervals, given_contacts
 from tempose.transfer.feet import Feet
 from tempose.transfer.foot_hold import FADE
-from tempose.transfer.frames import gather
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.ground_plane import find_arms, lift_above, lowest
 from tempose.transfer.legs import Leg
 from tempose.transfer.placement import Placement, place_clip
+from tempose.transfer.soles import FootFrames
 from tempose.transfer.standing import Standing, hold_standing
 from tempose.typing import BoolArray, FloatArray, IntArray
 
@@ -92,7 +92,7 @@ def place_frames(job: Prepared, V: FloatArray, fps: float, hold: bool) -> Placed
     rest, solid = float(mesh.vertices[:, 1].min()), feet.ground is not None
     ground = rest if feet.ground is None else feet.ground
     arms = _arms(job) if solid and hold else ()
-    soles = [gather(V, mine) for mine in feet.vertices]
+    soles = [FootFrames(V, mine) for mine in feet.vertices]
     levels = _uneven(feet, mesh.vertices, rest)
     levels += 0.0 if feet.levels is None else job.leg_ratio * feet.levels
     trunk = lowest(V, _trunk(len(mesh.vertices), (*feet.legs, *arms), hold)) if solid else None
