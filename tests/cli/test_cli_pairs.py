@@ -17,7 +17,7 @@ import tempose
 from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.samples.skeletons import human_skeleton
 from tempose.transfer import mark_colors
-from tempose.transfer.matching import Found
+from tempose.transfer.found_pairs import Found
 
 Run = Callable[..., Any]
 
@@ -148,7 +148,7 @@ def test_doubt_is_told(run: Run, job: Path, monkeypatch: pytest.MonkeyPatch, bod
 
     def find(source: Skeleton, target: SkinnedMesh, mapping: Any, embed: bool) -> Found:
         assert embed
-        return Found(matching.pairs_from_skin(source, target, mapping), ("looks odd",), facts)
+        return Found(tempose.transfer.pairs_from_skin(source, target, mapping), ("looks odd",), facts)
 
     monkeypatch.setattr(matching, "find_pairs", find)
     ran = run("pairs", "walk.bvh", "boxes.npz", "--embed")

@@ -51,6 +51,8 @@ def pairs(  # numpydoc ignore=PR01
 ) -> None:
     """Find which faces of a still mesh belong to which joint of a motion, without a click."""
     _check_names(out, preview, weights)
+    if embed and weights is not None:
+        raise ValueError(f"{weights}: --embed leaves weights alone; leave one of --embed and --weights out")
     if check is not None or mirror is not None:
         about = {"source_options": {"up": source_up, "unit": source_unit, "clip": clip}}
         about |= {"target_options": {"up": target_up, "unit": target_unit}}

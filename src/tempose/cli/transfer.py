@@ -47,6 +47,8 @@ def transfer(  # numpydoc ignore=PR01
     apart = ("source", "target", "out", "report", "json", "began", "apart")
     options = {name: value for name, value in locals().items() if name not in apart}
     check_out(out)
+    if embed and pairs is not None:
+        raise ValueError(f"{pairs}: --embed finds pairs itself; leave one of --embed and --pairs out")
     listed = load_pairs(pairs)
     motion = load_motion(source, listed, up=source_up, unit=source_unit, fps=source_fps, clip=clip)
     goal = load_target(target, pairs, group, up=target_up, unit=target_unit)

@@ -31,7 +31,8 @@ from tempose.transfer.correspondence import (
     select_pairs,
     suggest_partner,
 )
-from tempose.transfer.matching import Found, Matched, find_pairs, match
+from tempose.transfer.found_pairs import Found, find_pairs
+from tempose.transfer.matching import Matched, match
 from tempose.transfer.motion_transfer import Anchor, MotionTransfer
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.pairs_io import load_pairs, save_pairs

@@ -15,7 +15,7 @@ from tempose.transfer.adjustments.on_result import adjust
 from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.lead import LEAD
-from tempose.transfer.matching import Matched, match, prepare
+from tempose.transfer.matching import Matched, match
 from tempose.transfer.measuring import add_measures
 from tempose.transfer.pairs import Pairs
 from tempose.transfer.placing import (
@@ -26,6 +26,7 @@ from tempose.transfer.placing import (
     place_frames,
     with_contacts,
 )
+from tempose.transfer.preparing import prepare
 from tempose.transfer.references import Singular, choose_references
 from tempose.transfer.result import TransferResult
 from tempose.transfer.template import template_clip
