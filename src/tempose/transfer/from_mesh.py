@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import (
 
 from tempose.clips import Mesh, MeshClip
 from tempose.geometry import edge_list, k_rings
+from tempose.transfer.fabric import Fabric
 from tempose.transfer.feet import mesh_feet
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.mesh_source import RINGS, face_patches, patch_rotations, vertex_patches
@@ -28,7 +29,13 @@ MANY_PAIRS = 2000
 
 
 def prepare_mesh(
-    clip: MeshClip, mesh: Mesh, pairs: Pairs, *, rest: FloatArray | None = None, volume: float = 0.0
+    clip: MeshClip,
+    mesh: Mesh,
+    pairs: Pairs,
+    *,
+    rest: FloatArray | None = None,
+    volume: float = 0.0,
+    fabric: Fabric | None = None,
 ) -> Prepared:
     """Do everything that comes before the frames.
 
@@ -43,6 +50,8 @@ def prepare_mesh(
     rest : (n, 3) float, optional
         Reference pose of the source in any scale; the rest of the clip if not given.
     volume : float, default 0
+        See `MotionTransfer`.
+    fabric : Fabric, optional
         See `MotionTransfer`.
 
     Returns
@@ -60,7 +69,7 @@ def prepare_mesh(
         patches = face_patches(F, n, source, RINGS if len(pairs) < MANY_PAIRS else 0)
         middle = F[source, 0]
         marked, columns = mesh.faces[pairs.target].ravel(), np.repeat(np.arange(len(pairs)), 3)
-    solver = MotionTransfer(mesh, marked, columns, len(pairs), volume=volume)
+    solver = MotionTransfer(mesh, marked, columns, len(pairs), volume=volume, fabric=fabric)
     raw = patch_rotations(clip.vertices, V_rest, F, patches)
     order, parents = geodesic_tree(V_rest, F, middle)
     Q = np.zeros_like(raw)

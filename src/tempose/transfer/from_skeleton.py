@@ -15,6 +15,7 @@ from tempose.transfer.columns import Columns
 from tempose.transfer.fabric import Fabric, weave
 from tempose.transfer.facing import UP
 from tempose.transfer.feet import Feet, bone_feet, flat_stance
+from tempose.transfer.fields import HarmonicFields
 from tempose.transfer.geodesic_path import path_columns
 from tempose.transfer.joint_patches import inner_strengths, joint_patches, volume_fill
 from tempose.transfer.lead import LEAD, learn_lead
@@ -209,15 +210,16 @@ def _solver(
     return solver, columns
 
 
-def _target_pose(
-    mesh: Mesh, bones: Bones, pairs: Pairs, marks: IntArray, fabric: Fabric
-) -> BonePose:
+def _target_pose(mesh: Mesh, bones: Bones, pairs: Pairs, marks: IntArray, fabric: Fabric) -> BonePose:
     starts, ends = np.zeros((2, len(bones.names), 3))
     if not all(name in pairs.joints and name in pairs.ends for name in bones.names):
         marked = mesh.faces[pairs.target].ravel()
-        basis = MotionTransfer(mesh, marked, np.repeat(marks, 3), len(bones.names), fabric=fabric).basis
-        assert basis is not None
-        starts, ends = estimate_joints(mesh.vertices, basis, bones.parents)
+        columns = np.repeat(marks, 3)
+        fields = HarmonicFields(
+            fabric.field_matrix, fabric.inverse[marked], columns, len(bones.names), fabric.order
+        )
+        assert fields.basis is not None
+        starts, ends = estimate_joints(mesh.vertices, fields.basis[fabric.inverse], bones.parents)
     for b, name in enumerate(bones.names):
         if name in pairs.joints:
             starts[b] = pairs.joints[name]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip
+from tempose.transfer.fabric import Fabric, weave
 from tempose.transfer.from_mesh import prepare_mesh
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
 from tempose.transfer.measures import direction_measures, distortion_measures, soft_faces
@@ -29,7 +30,9 @@ class Preview:
     report: dict[str, Any]
     """Distortion, volume and bone directions of these frames, as in the report of a transfer."""
     seconds: dict[str, float]
-    """Of set-up and frames."""
+    """Of set-up, frames and measures."""
+    fabric: Fabric
+    """What does not depend on the pairs, for the next preview of the same target."""
 
 
 def preview_pairs(
@@ -42,6 +45,7 @@ def preview_pairs(
     volume: float = 0.0,
     mapping: dict[str, str] | None = None,
     measure: bool = True,
+    fabric: Fabric | None = None,
 ) -> Preview:
     """Pose the target by the given pairs in chosen frames of the source.
 
@@ -63,6 +67,8 @@ def preview_pairs(
         Source joint to body role.
     measure : bool, default True
         Whether to report measures.
+    fabric : Fabric, optional
+        That of the last preview of this very target: most of the set-up is then done.
 
     Returns
     -------
@@ -84,21 +90,24 @@ def preview_pairs(
     wrong = [t for t in chosen if not 0 <= t < source.n_frames]
     if wrong or not chosen:
         raise ValueError(f"frames must be from 0 to {source.n_frames - 1}, got {wrong or chosen}")
+    if fabric is None or fabric.mesh is not target:
+        fabric = weave(target)
     if isinstance(source, SkeletonClip):
         pairs.check(0, len(target.faces), source.skeleton.names)
-        job, rows = _of_skeleton(source, target, pairs, chosen, volume, mapping)
+        job, rows = _of_skeleton(source, fabric, pairs, chosen, volume, mapping)
     else:
         n = (source.vertices.shape[1], len(target.vertices))
         pairs.check(*(n if pairs.kind == "vertices" else (len(source.faces), len(target.faces))))
         part = replace(source, vertices=source.vertices[chosen])
-        job, rows = prepare_mesh(part, target, pairs, rest=rest, volume=volume), np.arange(len(chosen))
+        job = prepare_mesh(part, target, pairs, rest=rest, volume=volume, fabric=fabric)
+        rows = np.arange(len(chosen))
     ready = time.perf_counter()
     Q = job.rotations[rows]
     V = job.solver.pose(Q)
     posed = time.perf_counter()
     report = _measures(job, V, Q, rows) if measure else {}
     seconds = {"set-up": ready - began, "frames": posed - ready, "measures": time.perf_counter() - posed}
-    return Preview(V, tuple(chosen), report, seconds)
+    return Preview(V, tuple(chosen), report, seconds, fabric)
 
 
 _CONTEXT = 60
@@ -106,7 +115,7 @@ _CONTEXT = 60
 
 def _of_skeleton(
     source: SkeletonClip,
-    target: Mesh,
+    fabric: Fabric,
     pairs: Pairs,
     chosen: list[int],
     volume: float,
@@ -116,7 +125,7 @@ def _of_skeleton(
     step = max(1, source.n_frames // _CONTEXT)
     kept = np.union1d(np.arange(0, source.n_frames, step), chosen)
     thin = replace(source.frames(kept), fps=source.fps / step)
-    job = prepare_skeleton(thin, target, pairs, mapping=mapping, volume=volume)
+    job = prepare_skeleton(thin, fabric.mesh, pairs, mapping=mapping, volume=volume, fabric=fabric)
     rows = np.searchsorted(kept, chosen) - job.first_frame
     # a chosen frame that was taken for the rest pose is no motion: the first of the motion then
     return job, np.maximum(rows, 0)
