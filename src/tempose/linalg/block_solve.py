@@ -12,7 +12,7 @@ from typing import Any
 
 import numba
 
-from tempose.linalg.lanes import item, load4, load8, plus_times, store
+from tempose.linalg.lanes import alike, item, load4, load8, plus_times, scaled, store
 
 
 @numba.njit(cache=True, nogil=True)
@@ -68,17 +68,22 @@ def backward_4(
     """
     for s in range(hi - 1, lo - 1, -1):
         w, begin, at = first[s + 1] - first[s], 4 * first[s], place[s]
-        T[: 4 * w] = 0
+        nothing = alike(load4(T, 0), T.dtype.type(0.0))
+        for j in range(w):
+            store(T, 4 * j, nothing)
         for r in range(own[s], own[s + 1], 4):
             x0, x1 = load4(X, 4 * rows[r]), load4(X, 4 * rows[r + 1])
             x2, x3 = load4(X, 4 * rows[r + 2]), load4(X, 4 * rows[r + 3])
             for j in range(w):
-                y = plus_times(load4(T, 4 * j), item(blocks, at + j), x0)
+                # summed apart from T, so that no row waits for the one before
+                y = scaled(item(blocks, at + j), x0)
                 y = plus_times(y, item(blocks, at + w + j), x1)
                 y = plus_times(y, item(blocks, at + 2 * w + j), x2)
-                store(T, 4 * j, plus_times(y, item(blocks, at + 3 * w + j), x3))
+                y = plus_times(y, item(blocks, at + 3 * w + j), x3)
+                store(T, 4 * j, load4(T, 4 * j) + y)
             at += 4 * w
-        X[begin : begin + 4 * w] = T[: 4 * w]
+        for j in range(w):
+            store(X, begin + 4 * j, load4(T, 4 * j))
 
 
 @numba.njit(cache=True, nogil=True)

@@ -13,6 +13,8 @@ import numba
 
 from tempose.linalg.lanes import alike, item, lane, load4, load8, plus_times, scaled, store, turned
 
+TILE = 64
+
 
 @numba.njit(cache=True, nogil=True)
 def spread_1(W: Any, Q: Any, B: Any, q: Any) -> None:
@@ -178,18 +180,25 @@ def write_frames(
     out : (K, n', 3) ndarray
         Written.
     """
-    for t in range(out.shape[0]):
-        for c in range(3):
-            total = 0.0
-            for v in range(len(rows)):
-                if weights[v] != 0.0:
-                    at = wide * rows[v] + t
-                    for d in range(3):
-                        total += weights[v] * R[t, c, d] * (rest[v, d] + u[at + d * step])
-            to[t, c] -= total
-    for v in range(len(rows)):
-        for t in range(out.shape[0]):
-            at = wide * rows[v] + t
-            x, y, z = rest[v, 0] + u[at], rest[v, 1] + u[at + step], rest[v, 2] + u[at + 2 * step]
-            for c in range(3):
-                out[t, v, c] = R[t, c, 0] * x + R[t, c, 1] * y + R[t, c, 2] * z + to[t, c]
+    K, n = out.shape[0], len(rows)
+    for v in range(n):
+        if weights[v] != 0.0:
+            for t in range(K):
+                for d in range(3):
+                    share = weights[v] * (rest[v, d] + item(u, wide * rows[v] + t + d * step))
+                    for c in range(3):
+                        to[t, c] -= R[t, c, d] * share
+    # some vertices at a time: their rows stay in the cache while the frames are written one by one
+    for begin in range(0, n, TILE):
+        for t in range(K):
+            r00, r01, r02, sx = R[t, 0, 0], R[t, 0, 1], R[t, 0, 2], to[t, 0]
+            r10, r11, r12, sy = R[t, 1, 0], R[t, 1, 1], R[t, 1, 2], to[t, 1]
+            r20, r21, r22, sz = R[t, 2, 0], R[t, 2, 1], R[t, 2, 2], to[t, 2]
+            for v in range(begin, min(begin + TILE, n)):
+                at = wide * rows[v] + t
+                x = rest[v, 0] + item(u, at)
+                y = rest[v, 1] + item(u, at + step)
+                z = rest[v, 2] + item(u, at + 2 * step)
+                out[t, v, 0] = r00 * x + r01 * y + r02 * z + sx
+                out[t, v, 1] = r10 * x + r11 * y + r12 * z + sy
+                out[t, v, 2] = r20 * x + r21 * y + r22 * z + sz

@@ -196,13 +196,14 @@ class MotionTransfer:
         lead = Q.shape[:-2]
         frames = as_floats(Q.reshape(-1, *Q.shape[-2:]), "Q", ("T", self.n_bones, 4))
         out = np.zeros((len(frames), len(self.mesh.vertices), 3))
-
-        def receive(block: slice, V: FloatArray) -> None:
-            out[block] = V
-
-        self.pose_blocks(frames, receive)
+        to = np.tile(self.anchor.point, (len(frames), 1))
         if place is not None:
-            out += (as_floats(place, "place", (*lead, 3)).reshape(-1, 3) - self.anchor.point)[:, None]
+            to = as_floats(place, "place", (*lead, 3)).reshape(-1, 3)
+
+        def solve(block: slice) -> FloatArray:
+            return self._solve(frames[block], None, to[block], out[block])
+
+        solve_blocks(solve, len(frames), self.workers, lambda block, V: None)
         return out.reshape(*lead, *out.shape[1:])
 
     def pose_blocks(
@@ -224,11 +225,15 @@ class MotionTransfer:
         """
 
         def solve(block: slice) -> FloatArray:
-            return self._solve(Q[block], references.field(self.spread, block) if references else None)
+            K = len(Q[block])
+            field = references.field(self.spread, block) if references else None
+            out = np.zeros((K, *self.mesh.vertices.shape))
+            return self._solve(Q[block], field, np.tile(self.anchor.point, (K, 1)), out)
 
         solve_blocks(solve, len(Q), self.workers, receive)
 
-    def _solve(self, Q: FloatArray, field: FloatArray | None = None) -> FloatArray:
+    def _solve(self, Q: FloatArray, field: FloatArray | None, to: FloatArray, out: FloatArray) -> FloatArray:
+        """Write frames to `out`, the anchor at `to`."""
         # what all bones share is applied at the end: large turns of the whole cost no accuracy
         common = _common_rotation(Q)
         if field is None:
@@ -237,11 +242,10 @@ class MotionTransfer:
             turned = multiply(conjugate(common), np.moveaxis(field, 1, 2))
             rows = self._glue.in_rows(np.moveaxis(turned, 1, 2))
         u = self._glue.displacements(rows)
-        goal = np.tile(self.anchor.point, (len(Q), 1))
+        goal = np.array(to)
         if self.anchor.bone is not None:
             arm = self.anchor.point - self.anchor.weights @ self.mesh.vertices
             goal -= rotate(Q[:, self.anchor.bone], arm)
-        out = np.zeros((len(Q), *self.mesh.vertices.shape))
         wide, R = u.shape[1], to_matrix(common)
         step = 1 if wide == 4 else wide // 3
         write_frames(u.reshape(-1), wide, step, self._rows, self._rest, R, self.anchor.weights, goal, out)
