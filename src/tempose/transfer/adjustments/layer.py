@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tempose.rotations import from_rotation_vector, multiply, rotate
-from tempose.transfer.adjustments.parts import Part, residual_field, turned_field
+from tempose.rotations import (
+    conjugate,
+    from_matrix,
+    from_rotation_vector,
+    multiply,
+    procrustes_rotation,
+    rotate,
+)
+from tempose.transfer.adjustments.parts import Part, residual_field, rigid_vertices, turned_field
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.limb_ik import bones_below
+from tempose.transfer.references import References, choose_references
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 BLOCK = 16
 """Frames in memory at a time."""
-_PASSES = 3
+_PASSES, _ENOUGH = 6, 0.03
+"""Passes at most, and which share of the stretch that is free may be left to the surface."""
 
 
 @dataclass
@@ -52,17 +62,6 @@ class Layer:
         """
         n_bones = job.rotations.shape[1] if job.bones is None else len(job.bones.names)
         return Layer(job, frames, np.array(job.rotations[:, :n_bones]), progress)
-
-    def columns(self) -> FloatArray:
-        """Compute the rotations of all columns of the solver.
-
-        Returns
-        -------
-        (T, C, 4) ndarray
-            As adjusted so far.
-        """
-        columns = self.job.columns
-        return self.rotations if columns is None else columns.rotations(self.rotations)
 
     def shift_body(self, offsets: FloatArray) -> None:
         """Move the whole body.
@@ -103,14 +102,24 @@ class Layer:
         """
         assert part.bone is not None and self.job.bones is not None
         below = bones_below(self.job.bones.parents, part.bone)
-        field_ = turned_field(self.job, part.bone)
+        weight = turned_field(self.job, part.bone)[:, None]
+        core = rigid_vertices(self.job, part.bone)
         for block in self._blocks(np.flatnonzero(turns.any(axis=1)), part.name):
             before = self._pose(block, self.rotations[block])
-            turned = np.array(self.rotations[block])
-            turned[:, below] = multiply(from_rotation_vector(turns[block])[:, None], turned[:, below])
-            change = self._pose(block, turned) - before
-            self.frames[block] += (field_[:, None] * change).astype(np.float32)
+            asked = turn = from_rotation_vector(turns[block])
+            turned, after = self._turned(block, below, turn)
+            for _ in range(2 if len(core) else 0):
+                # a head lags behind its marks by a tenth: the glue shares its turn with the neck
+                done = from_matrix(procrustes_rotation(before[:, core], after[:, core]))
+                turn = multiply(multiply(asked, conjugate(done)), turn)
+                turned, after = self._turned(block, below, turn)
+            self.frames[block] += (weight * (after - before)).astype(np.float32)
             self.rotations[block] = turned
+
+    def _turned(self, block: IntArray, below: IntArray, turn: FloatArray) -> tuple[FloatArray, FloatArray]:
+        turned = np.array(self.rotations[block])
+        turned[:, below] = multiply(_short(turn)[:, None], turned[:, below])
+        return turned, self._pose(block, turned)
 
     def shift_part(self, part: Part, wanted: FloatArray, active: IntArray, follow: bool) -> FloatArray:
         """Bring a part's point to places: the bones reach for it, the surface takes up what they leave.
@@ -161,7 +170,10 @@ class Layer:
             moved = V + weight[:, None] * (self._pose(block, turned) - before)
             last, got = got, part.points(moved)
             H = _secant(H, step, got - last)
-            step = np.einsum("kij,kj->ki", H, part.chain.attainable(turned, wanted - got))
+            missing = part.chain.attainable(turned, wanted - got)
+            if np.linalg.norm(missing, axis=1).max() < _ENOUGH * part.chain.stretch * part.chain.length:
+                break
+            step = np.einsum("kij,kj->ki", H, missing)
         self.rotations[block] = turned
         return moved
 
@@ -175,16 +187,41 @@ class Layer:
         return left * np.divide(allowed, length, out=np.ones_like(length), where=length > 0)
 
     def _pose(self, block: IntArray, Q: FloatArray) -> FloatArray:
-        columns = self.job.columns
-        if columns is not None:
-            whole = np.array(self.rotations)
-            whole[block] = Q
-            Q = columns.rotations(whole)[block]
-        return self.job.solver.pose(Q)
+        """Solve some frames that follow each other."""
+        whole = np.array(self.rotations)
+        whole[block] = Q
+        Q = self._columns(whole)[block]
+        out = np.zeros((len(block), len(self.job.solver.mesh.vertices), 3))
 
-    def _blocks(self, active: IntArray, stage: str) -> list[IntArray]:
+        def receive(part: slice, V: FloatArray) -> None:
+            out[part] = V
+
+        self.job.solver.pose_blocks(Q, receive, self._references(block, Q))
+        return out
+
+    def _references(self, block: IntArray, Q: FloatArray) -> References | None:
+        """Carry the reference poses of the clip over to some frames with other rotations."""
+        references = self.job.references
+        if references is None:
+            return None
+        turns, before = np.array(Q), np.searchsorted(references.frames, block, side="left") - 1
+        for k, i in enumerate(before):
+            if i >= 0:
+                turns[k] = multiply(Q[k], conjugate(self.job.rotations[references.frames[i]]))
+        return References(references.frames - block[0], references.fields, turns)
+
+    def _columns(self, Q: FloatArray) -> FloatArray:
+        return Q if self.job.columns is None else self.job.columns.rotations(Q)
+
+    def _blocks(self, active: IntArray, stage: str) -> Iterator[IntArray]:
+        """Cut frames into runs without gaps, none longer than a block."""
         self.changed |= {int(t) for t in active}
-        return [active[i : i + BLOCK] for i in range(0, len(active), BLOCK)]
+        runs = np.split(active, np.flatnonzero(np.diff(active) > 1) + 1)
+        done = 0
+        for block in (run[i : i + BLOCK] for run in runs for i in range(0, len(run), BLOCK)):
+            yield block
+            done += len(block)
+            self.progress(done, len(active), f"adjusting {stage}")
 
     def adjusted_job(self) -> Prepared:
         """Return the job with the rotations as they are now.
@@ -194,7 +231,15 @@ class Layer:
         Prepared
             For measures and further layers.
         """
-        return replace(self.job, rotations=self.columns())
+        turned = replace(self.job, rotations=self._columns(self.rotations))
+        if turned.references is None:
+            return turned
+        return replace(turned, references=choose_references(turned.solver.spread, turned.rotations))
+
+
+def _short(q: FloatArray) -> FloatArray:
+    """Give rotations the sign of less than half a turn, so that signs go on agreeing with the neighbours'."""
+    return np.where(q[..., :1] < 0, -q, q)
 
 
 def _secant(H: FloatArray, asked: FloatArray, got: FloatArray) -> FloatArray:

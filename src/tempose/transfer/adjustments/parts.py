@@ -14,17 +14,21 @@ from tempose.geometry import edge_list, weld
 from tempose.kinematics import ROLES
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.adjustments.chains import LimbChain, TurnChain, find_chain
+from tempose.transfer.bones import split_role
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.joint_regressor import apply_regressor, regress_points
 from tempose.transfer.limb_field import limb_field
 from tempose.transfer.limb_ik import bones_below
+from tempose.transfer.marks import RIGID_PARTS
 from tempose.typing import FloatArray, IntArray
 
 ROOT = "root"
 """Name of the whole body."""
 HIPS = "hips"
 """The pelvis: it moves as the whole body does, but the feet stay."""
-_TOUCHED = 0.02
+_UNFELT, _FELT = 0.05, 0.5
+"""Share of a limb in a vertex below which it does not move with it, and from which it does so wholly."""
+_ONE_LIMB, _RIGID = 0.7, 0.99
 _SCULPTED = 0.12
 """Share of the diagonal over which a displacement fades where no bone can make it."""
 
@@ -164,24 +168,35 @@ def turned_field(job: Prepared, top: int) -> FloatArray:
     Returns
     -------
     (n,) ndarray
-        1 where the turn is felt at all; 0, so that nothing whatever moves, on all limbs but this one, and on
-        the trunk beyond the two bones it hangs on.
+        1 on the limb, 0 on all other limbs and on the trunk away from the joint, so that nothing moves there
+        at all; the glue alone would shift the whole body by some millimetres.
     """
     assert job.bones is not None
-    basis, parents = bone_basis(job), job.bones.parents
-    below = bones_below(parents, top)
-    near = [*below, *_ancestors(parents, top)[:2]]
-    felt = basis[:, below].sum(axis=1)
-    return limb_field(
-        job.solver, np.flatnonzero(felt > _TOUCHED), np.flatnonzero(basis[:, near].sum(axis=1) < 0.5)
-    )
+    share = bone_basis(job)[:, bones_below(job.bones.parents, top)].sum(axis=1)
+    s = np.clip((share - _UNFELT) / (_FELT - _UNFELT), 0.0, 1.0)
+    return s * s * (3 - 2 * s)
 
 
-def _ancestors(parents: IntArray, bone: int) -> list[int]:
-    found: list[int] = []
-    while (bone := int(parents[bone])) >= 0:
-        found.append(bone)
-    return found
+def rigid_vertices(job: Prepared, bone: int) -> IntArray:
+    """Vertices by which the turn of a part is measured.
+
+    Parameters
+    ----------
+    job : Prepared
+        A transfer with bones.
+    bone : int
+        A bone.
+
+    Returns
+    -------
+    (k,) ndarray of int
+        Those that move with a head, hand or foot alone; none for parts that bend, whose turn is spread.
+    """
+    assert job.bones is not None
+    if split_role(job.bones.roles[bone])[1] not in RIGID_PARTS:
+        return np.zeros(0, dtype=np.int64)
+    mine = np.flatnonzero(bone_basis(job)[:, bone] > _RIGID)
+    return mine if len(mine) > 2 else np.zeros(0, dtype=np.int64)
 
 
 def residual_field(job: Prepared, part: Part) -> FloatArray:
@@ -215,7 +230,7 @@ def residual_field(job: Prepared, part: Part) -> FloatArray:
         zero = _beyond(job, one)
     field = limb_field(job.solver, one, zero)
     share = float(part.weights @ field[part.vertices])
-    if share < 0.5:
+    if share < _ONE_LIMB:
         raise ValueError(f"the vertices of a part must lie on one limb, got {part.name} on several")
     return field / share
 
