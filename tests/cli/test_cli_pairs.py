@@ -166,3 +166,29 @@ def test_neighbouring_joints_differ_in_colour(body: SkinnedMesh) -> None:
         assert np.abs(a - b).max() > 0.3
     unmarked = np.setdiff1d(np.arange(len(colors)), pairs.target)
     assert np.ptp(colors[unmarked], axis=0).max(initial=0) == 0
+
+
+@pytest.mark.parametrize("command", ["pairs", "transfer"])
+def test_what_is_no_human_leaves_one_line_and_no_file(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    import trimesh
+
+    monkeypatch.chdir(tmp_path)
+    text = WALK % "".join(chain(limb) for limb in CHAINS)
+    Path("walk.bvh").write_text(text + "\n".join(["0 0.9 0 " + " ".join(["0 0 0"] * 16)] * 3) + "\n")
+    post = trimesh.creation.cylinder(radius=0.15, height=1.6, sections=12)
+    tempose.save("post.ply", Mesh(post.vertices[:, [0, 2, 1]], post.faces[:, ::-1]))
+    out = "out.json" if command == "pairs" else "out.npz"
+    ran = run(command, "walk.bvh", "post.ply", "-o", out)
+    assert ran.code == 2 and "Traceback" not in ran.err
+    last = ran.err.splitlines()[-1]
+    assert "does not look human" in last and "penalty" in last and "--pairs" in last
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["post.ply", "walk.bvh"]
+
+
+def test_contradicting_options_are_refused(run: Run, job: Path) -> None:
+    ran = run("pairs", "walk.bvh", "boxes.npz", "--embed", "--weights", "skin.mhw")
+    assert ran.code == 2 and "leave one of --embed and --weights out" in ran.err.splitlines()[-1]
+    ran = run("transfer", "walk.bvh", "boxes.npz", "--embed", "--pairs", "pairs.json", "-o", "out.npz")
+    assert ran.code == 2 and "leave one of --embed and --pairs out" in ran.err.splitlines()[-1]
