@@ -12,6 +12,8 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 FILLED = ("upper_arm", "forearm", "thigh", "shin")
 """Bones at whose start volume is given back: shoulders, elbows, hips and knees."""
+MIDDLES, MIDDLE_REACH = ("forearm",), 0.6
+"""Bones whose middle counts too, because twist thins them there, and the radius of that patch in lengths."""
 INNER = 0.35
 """Strength of inner edges at a volume of 1; the rest comes back by pushing the skin out."""
 FAINT, FAINT_PARTS = 0.3, ("upper_arm", "clavicle", "chest", "neck", "head")
@@ -40,8 +42,8 @@ def joint_patches(
     Returns
     -------
     dict of str to Patch
-        Role of the bone that starts at the joint to its patch. Where no bone has a role, all joints between
-        two bones of known length count, by name.
+        Role of the bone that starts at the joint to its patch; with ``_middle`` the patch round the middle of
+        a forearm. Where no bone has a role, all joints between two bones of known length count, by name.
     """
     welded = solver.welded
     of_face = owner[welded.first][welded.faces]
@@ -52,10 +54,13 @@ def joint_patches(
         if not wanted or target.lengths[b] == 0:
             continue
         allowed = np.flatnonzero(near[b][of_face].all(axis=1))
-        radius = REACH * float(target.lengths[b])
-        patch = make_patch(welded, allowed, target.starts[b], radius)
-        if patch is not None:
-            patches[role or name] = patch
+        places = {"": (target.starts[b], REACH)}
+        if split_role(role)[1] in MIDDLES:
+            places["_middle"] = ((target.starts[b] + target.ends[b]) / 2, MIDDLE_REACH)
+        for which, (point, reach) in places.items():
+            patch = make_patch(welded, allowed, point, reach * float(target.lengths[b]))
+            if patch is not None:
+                patches[(role or name) + which] = patch
     return patches
 
 
