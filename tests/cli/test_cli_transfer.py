@@ -236,3 +236,40 @@ def test_an_interrupted_long_clip_leaves_nothing(
     monkeypatch.setattr(tempose, "save", lambda *_, **__: (_ for _ in ()).throw(KeyboardInterrupt()))
     assert run(*WORDS).code == 130
     assert sorted(os.listdir()) == before
+
+
+def test_adjustments_are_layered_on_the_result(run: Run, job: Path) -> None:
+    words = [*WORDS, "--source-rest", 0, "--no-contacts"]
+    assert run(*words).code == 0
+    before = tempose.formats.load_clip("out.npz")
+    changes = [{"part": "root", "frame": 2, "move": [0.5, 0, 0], "ease_in": 0.1, "ease_out": 0.1}]
+    Path("changes.json").write_text(json.dumps({"adjustments": changes}))
+    ran = run(*words, "--adjust", "changes.json", "--report", "report.json")
+    assert ran.code == 0, ran.err
+    assert "1, 3 frames changed" in ran.out
+    step = np.asarray(tempose.formats.load_clip("out.npz").vertices) - before.vertices
+    assert_allclose(step[2], np.tile([0.5, 0, 0], (len(step[2]), 1)), atol=1e-6)
+    assert_array_equal(step[[0, 4, 5]], 0)
+    report = json.loads(Path("report.json").read_text())
+    assert report["adjustments"]["unmet"] == [] and report["options"]["adjust"] == "changes.json"
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (
+            {"part": "root", "frame": 9, "move": [1, 0, 0]},
+            "frame 9 is not in the clip, whose last frame is 5",
+        ),
+        (
+            {"part": "paw", "frame": 0, "move": [1, 0, 0]},
+            "adjustment 0: no part 'paw'; parts are root, low, high",
+        ),
+        ({"part": "root", "frame": 0}, "changes.json: adjustment 0: an adjustment needs move, to or turn"),
+    ],
+)
+def test_wrong_adjustments(run: Run, job: Path, entry: Any, said: str) -> None:
+    Path("changes.json").write_text(json.dumps({"adjustments": [entry]}))
+    ran = run(*WORDS, "--adjust", "changes.json")
+    assert ran.code == 2 and said in ran.err.splitlines()[-1]
+    assert not Path("out.npz").exists()
