@@ -69,7 +69,10 @@ def prepare_mesh(
         patches = face_patches(F, n, source, RINGS if len(pairs) < MANY_PAIRS else 0)
         middle = F[source, 0]
         marked, columns = mesh.faces[pairs.target].ravel(), np.repeat(np.arange(len(pairs)), 3)
-    solver = MotionTransfer(mesh, marked, columns, len(pairs), volume=volume, fabric=fabric)
+    # frames are kept in float32
+    solver = MotionTransfer(
+        mesh, marked, columns, len(pairs), volume=volume, precision="single", fabric=fabric
+    )
     raw = patch_rotations(clip.vertices, V_rest, F, patches)
     order, parents = geodesic_tree(V_rest, F, middle)
     Q = np.zeros_like(raw)

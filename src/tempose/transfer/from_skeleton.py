@@ -206,7 +206,9 @@ def _solver(
         of_vertex = np.concatenate([of_vertex, len(columns) + station])
         columns = Columns(columns.n_bones, columns.between + between)
     strengths = inner_strengths([bones.roles[b] for b in columns.bones], volume)
-    solver = MotionTransfer(mesh, vertices, of_vertex, len(columns), volume=strengths, fabric=fabric)
+    solver = MotionTransfer(
+        mesh, vertices, of_vertex, len(columns), volume=strengths, precision="single", fabric=fabric
+    )
     return solver, columns
 
 
