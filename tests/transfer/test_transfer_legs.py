@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from transfer_bodies import clip_of, human_body
 
-from tempose.clips import Mesh, SkeletonClip
+from tempose.clips import Mesh, Skeleton, SkeletonClip
 from tempose.samples.skeletons import animal_skeleton
 from tempose.transfer import pairs_from_skin
 from tempose.transfer.bones import make_bones
@@ -82,6 +82,19 @@ def test_legs_without_roles_end_where_the_tree_branches() -> None:
         children = [(np.asarray(bones.parents) == b).sum() for b in chain]
         assert len(chain) >= 2 and set(children) == {1}
         assert 0 not in chain
+
+
+def test_the_root_is_no_part_of_a_leg() -> None:
+    """A body of one leg: the tree does not branch, and still its root keeps its place."""
+    names = ("body", "upper", "lower", "paw")
+    skeleton = Skeleton(names, np.array([-1, 0, 1, 2]), np.array([[0, 1.0, 0], *3 * [[0, -0.3, 0]]]))
+    bones = make_bones(skeleton, names, {})
+    rest = bone_rest(clip_of(skeleton, {}, 1), bones, {})
+    owner = np.repeat(np.arange(4), 5)
+    V = rest.starts[owner] + 0.05 * np.random.default_rng(0).normal(size=(20, 3))
+    leg = bone_leg(bones, [3], rest, owner, V)
+    assert_array_equal(np.unique(owner[leg.limb]), [1, 2])
+    assert leg.length == pytest.approx(0.6)
 
 
 def test_the_leg_of_a_mesh_is_what_is_low_but_no_other_foot() -> None:

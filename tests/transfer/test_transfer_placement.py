@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from tempose.transfer.placement import fit_scale as fit_scale_of
-from tempose.transfer.placement import place_clip
+from tempose.transfer.placement import place_clip, root_steps
 from tempose.transfer.soles import find_sole
 
 T, FPS, HEIGHT, SCALE = 120, 30.0, 1.7, 0.63
@@ -94,6 +94,22 @@ def test_a_steady_slip_is_taken_out_of_the_root() -> None:
     foot = on_the_ground(slipping, left.shift)[0]
     assert np.linalg.norm(np.diff(foot[..., [0, 2]], axis=0), axis=2)[5:15].max() > 1e-3
     assert left.correction == 0
+
+
+def test_the_share_of_the_root_begins_at_nothing_and_is_smooth() -> None:
+    path, soles, contact = walker()
+    rng = np.random.default_rng(0)
+    slipping = [foot + 0.004 * rng.normal(size=(T, 1, 3)).cumsum(axis=0) for foot in soles]
+    shift = SCALE * path
+    found = [find_sole(foot, contact[:, f], HEIGHT, FPS) for f, foot in enumerate(slipping)]
+    steps = root_steps(found, shift, FPS)
+    assert_allclose(steps[0], 0, rtol=0, atol=0)
+    assert np.abs(np.diff(steps, 2, axis=0)).max() < 0.5 * np.abs(np.diff(slipping[0][:, 0], 2, axis=0)).max()
+    before = sum(float((sole.slip(shift) ** 2).sum()) for sole in found)
+    moved = shift + np.column_stack([steps[:, 0], 0 * steps[:, 0], steps[:, 1]])
+    assert sum(float((sole.slip(moved) ** 2).sum()) for sole in found) < 0.7 * before
+    still = [find_sole(foot, np.zeros(T, dtype=bool), HEIGHT, FPS) for foot in slipping]
+    assert not root_steps(still, shift, FPS).any()
 
 
 def test_a_wavering_slip_is_mostly_taken_out() -> None:
