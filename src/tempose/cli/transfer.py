@@ -14,6 +14,9 @@ from tempose.cli.transfer_contacts import load_contacts, parse_ground
 from tempose.cli.transfer_frames import releasing, room_for_frames
 from tempose.cli.transfer_inputs import load_mapping, load_motion, load_pairs, load_rest, load_target
 
+LEAD = 0.6
+"""As `tempose.transfer.transfer_motion` has it; stated again so that ``--help`` need not load the library."""
+
 
 def transfer(  # numpydoc ignore=PR01
     source: given.Source,
@@ -28,6 +31,9 @@ def transfer(  # numpydoc ignore=PR01
     ground: given.Ground = None,
     adjust: given.Adjust = None,
     volume: given.Volume = 0.0,
+    twist: given.Twist = True,
+    lead: given.Lead = LEAD,
+    singular: given.Singular = "reference",
     start: given.Start = 0,
     stop: given.Stop = None,
     step: given.Step = 1,
@@ -54,7 +60,7 @@ def transfer(  # numpydoc ignore=PR01
     goal = load_target(target, pairs, group, up=target_up, unit=target_unit)
     settings: dict[str, Any] = {"mapping": load_mapping(mapping), "volume": volume}
     settings |= {"contacts": load_contacts(contact_frames, contacts), "ground": parse_ground(ground)}
-    settings["embed"] = embed
+    settings |= {"embed": embed, "twist": twist, "lead": lead, "singular": singular}
     if adjust is not None:
         settings["adjustments"] = tempose.transfer.load_adjustments(adjust)
     settings |= load_rest(source_rest, motion)

@@ -57,6 +57,26 @@ Adjust = Annotated[
 Volume = Annotated[
     float, typer.Option(metavar="W", min=0, help="Hold the volume at bends; 1 holds most of it.")
 ]
+Twist = Annotated[
+    bool,
+    typer.Option("--twist/--no-twist", help="Spread the twist of hands, arms and thighs along the limb."),
+]
+Lead = Annotated[
+    float,
+    typer.Option(
+        metavar="W",
+        min=0,
+        max=1,
+        help="Turn limbs further, so that their surface follows the bone; 1 exactly, at more stretch.",
+    ),
+]
+Singular = Annotated[
+    str,
+    typer.Option(
+        metavar="reference|path|none",
+        help="Where limbs turn by half a turn: take a frame before as reference, or lay paths over the skin.",
+    ),
+]
 Start = Annotated[int, typer.Option(metavar="FRAME", help="First frame of the source, 0-based.")]
 Stop = Annotated[int | None, typer.Option(metavar="FRAME", help="First frame left out.")]
 Step = Annotated[int, typer.Option(metavar="N", help="Use every N-th frame, at the same speed.")]

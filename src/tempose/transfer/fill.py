@@ -17,7 +17,7 @@ from tempose.typing import FloatArray, IntArray
 
 REACH = 0.5
 """Radius of a patch in lengths of the bone that starts at the joint."""
-CAP = 0.15
+CAP = 0.25
 """Furthest push in radii of the patch; it is approached softly, so that there is no jump in time."""
 
 
