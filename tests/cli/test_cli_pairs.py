@@ -168,7 +168,7 @@ def test_neighbouring_joints_differ_in_colour(body: SkinnedMesh) -> None:
     assert np.ptp(colors[unmarked], axis=0).max(initial=0) == 0
 
 
-@pytest.mark.parametrize("command", ["pairs", "transfer"])
+@pytest.mark.parametrize("command", [pytest.param("pairs", marks=pytest.mark.slow), "transfer"])
 def test_what_is_no_human_leaves_one_line_and_no_file(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:

@@ -14,6 +14,7 @@ from tempose.kinematics import forward_kinematics
 from tempose.kinematics.roles import find_roles
 from tempose.rotations import conjugate, multiply, rotate
 from tempose.samples.skeletons import human_skeleton
+from tempose.samples.walk import walk
 from tempose.transfer.alignment import stands_upright
 from tempose.transfer.bones import make_bones
 from tempose.transfer.pose import BonePose
@@ -166,3 +167,15 @@ def test_the_bones_of_a_motion_are_forward_kinematics(rng) -> None:
     world, P = forward_kinematics(SKELETON, clip.rotations, clip.root_position)
     assert_allclose(motion.turns, world, atol=1e-12)
     assert_allclose(motion.starts, P, atol=1e-12)
+
+
+@pytest.mark.parametrize("fps", [120.0, 15.0, 10.0])
+def test_a_t_pose_before_the_motion_is_seen_however_few_frames_are_kept(fps: float) -> None:
+    """Between frames that were thinned out a swinging arm turns a lot, but not all bones at once."""
+    walking = walk(t_pose(), duration=4.0, fps=fps)
+    roles = find_roles(walking.skeleton)
+    bones = make_bones(walking.skeleton, walking.skeleton.names, roles)
+    rest = bone_rest(walking, bones, roles)
+    put_before = with_first(walking, walking.skeleton.rest_rotations)
+    assert choose_reference(walking, bones, roles, rest).first_frame == 0
+    assert choose_reference(put_before, bones, roles, rest).first_frame == 1

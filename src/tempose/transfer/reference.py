@@ -15,6 +15,7 @@ from tempose.typing import FloatArray
 
 LEG_WARNING_DEG = 40.0
 _JUMP_DEG = 20.0
+_MANY_BONES, _UNUSUAL = 8, 2.5
 
 
 @dataclass(frozen=True)
@@ -129,9 +130,12 @@ def choose_reference(
 def _starts_with_reference(motion: BonePose, rest: BonePose, bones: Bones) -> bool:
     if len(motion.turns) < 3:
         return False
-    steps = np.degrees(angle_between(motion.turns[:-1], motion.turns[1:])).max(axis=1)
+    # the whole pose jumps: a single fast bone turns as far between frames that were thinned out
+    turned = np.sort(np.degrees(angle_between(motion.turns[:-1], motion.turns[1:])), axis=1)
+    steps = turned[:, -_MANY_BONES:].mean(axis=1)
     usual = float(np.percentile(steps[1:], 95))
-    return bool(steps[0] > _JUMP_DEG and steps[0] > 3 * usual and stands_upright(bones, motion.frame(0)))
+    jumps = steps[0] > _JUMP_DEG and steps[0] > _UNUSUAL * usual
+    return bool(jumps and stands_upright(bones, motion.frame(0)))
 
 
 def _doubts(bones: Bones, pose: BonePose, target: BonePose) -> tuple[str, ...]:
