@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip
@@ -59,8 +61,9 @@ def prepare(
     Raises
     ------
     ValueError
-        If the reference pose is not of the source's kind, or has no such frame.
+        If the reference pose is not of the source's kind or has no such frame, or an option no such value.
     """
+    _check_options(volume, lead, singular)
     if isinstance(source, SkeletonClip):
         if isinstance(rest, Mesh):
             raise ValueError("source_rest must be a motion clip of the same skeleton, got a mesh")
@@ -79,6 +82,15 @@ def prepare(
     if isinstance(rest, SkeletonClip):
         raise ValueError("source_rest must be a mesh like the source, got a skeleton clip")
     return prepare_mesh(source, mesh, pairs, rest=_mesh_rest(source, rest, rest_frame), volume=volume)
+
+
+def _check_options(volume: float, lead: float, singular: str) -> None:
+    if singular not in get_args(Singular):
+        raise ValueError(f"singular must be one of {', '.join(get_args(Singular))}, got {singular!r}")
+    if not 0 <= lead <= 1:
+        raise ValueError(f"lead must be a share from 0 to 1, got {lead}")
+    if not 0 <= volume < np.inf:
+        raise ValueError(f"volume must be 0 or more, got {volume}")
 
 
 def _mesh_rest(source: MeshClip, rest: Mesh | None, frame: int | None) -> FloatArray | None:
