@@ -44,7 +44,7 @@ def test_an_accepted_pair_is_met(body: Mesh) -> None:
         [-0.09, 0.7, 0.1],
     ]
     pairs = Pairs("faces", [face_near(body, p) for p in places], [face_near(other, p) for p in places])
-    finder = PartnerFinder(body, other, pairs)
+    finder = PartnerFinder(body, other, pairs, alignment=STILL)
     for s, t in zip(np.asarray(pairs.source), pairs.target):
         candidates = finder.suggest(int(s))
         assert candidates[0].index == t

@@ -24,7 +24,7 @@ _MARKS = 4
 _POOL = 60
 _APART = 0.01
 _SURE = 0.06
-_ENOUGH = 6
+_ENOUGH, _WRONG = 6, 2.5
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class PartnerFinder:
     pairs : Pairs, optional
         Pairs known so far, of faces or vertices; the warp passes through them.
     alignment : Alignment, optional
-        Source to target; by the pairs where those are six or more, else by shape, if not given.
+        Source to target; found by shape if not given, or by six or more pairs that contradict it.
     kind : {"faces", "vertices"}, default "faces"
         What is picked and suggested.
 
@@ -72,8 +72,7 @@ class PartnerFinder:
     ) -> None:
         here, there = _known(source, target, pairs)
         if alignment is None:
-            several = len(here) >= _ENOUGH
-            alignment = align_points(here, there) if several else align_meshes(source, target)
+            alignment = _overall(source, target, here, there)
         self.alignment, self.kind = alignment, kind
         self._partners: dict[int, int] = {}
         if pairs is not None and pairs.kind == kind:
@@ -215,6 +214,21 @@ def pair_points(mesh: Mesh, indices: IntArray, kind: str) -> FloatArray:
         Metres.
     """
     return mesh.vertices[indices] if kind == "vertices" else mesh.vertices[mesh.faces[indices]].mean(axis=1)
+
+
+def _overall(source: Mesh, target: Mesh, here: FloatArray, there: FloatArray) -> Alignment:
+    """Align by shape, unless the pairs say that this is the wrong way round.
+
+    Pairs alone do worse where the poses differ: raised arms tilt and stretch the whole body.
+    """
+    by_shape = align_meshes(source, target)
+    if len(here) < _ENOUGH:
+        return by_shape
+    by_pairs = align_points(here, there)
+    off = np.sqrt(((by_shape.apply(here) - there) ** 2).sum(axis=1).mean()) / np.linalg.norm(
+        np.ptp(there, axis=0)
+    )
+    return by_shape if off < _WRONG * by_pairs.residual else by_pairs
 
 
 def _known(source: Mesh, target: Mesh, pairs: Pairs | None) -> tuple[FloatArray, FloatArray]:

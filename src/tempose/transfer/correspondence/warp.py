@@ -55,9 +55,10 @@ class Warp:
         tree = KDTree(np.hstack([V_target, _BEND * size * vertex_normals(V_target, F_target)]))
         W = V
         if len(points) >= _ENOUGH:
-            # so many pairs tell more of where the parts are than the alignment does
+            # so many pairs tell more of where the parts are than the alignment does; a linear part would run
+            # away beyond them
             self._centres = points
-            self._fit(partners - points, np.full(len(points), _SOFT * size))
+            self._fit(partners - points, np.full(len(points), _SOFT * size), linear=False)
             W = self.apply(V)
         for _ in range(_ROUNDS):
             N = vertex_normals(W, F)[helpers]
@@ -67,17 +68,18 @@ class Warp:
             self._fit(np.concatenate([partners, V_target[near]]) - self._centres, soft)
             W = self.apply(V)
 
-    def _fit(self, displacement: FloatArray, soft: FloatArray) -> None:
+    def _fit(self, displacement: FloatArray, soft: FloatArray, linear: bool = True) -> None:
         X = self._centres
         self._middle, self._size = X.mean(axis=0), max(float(np.abs(X - X.mean(axis=0)).max()), 1e-300)
-        A, linear = _distances(X, X) - np.diag(soft), self._linear(X)
-        system = np.block([[A, linear], [linear.T, np.zeros((4, 4))]])
-        right = np.vstack([displacement, np.zeros((4, 3))])
+        self._columns = 4 if linear else 1
+        A, L = _distances(X, X) - np.diag(soft), self._linear(X)
+        system = np.block([[A, L], [L.T, np.zeros((self._columns, self._columns))]])
+        right = np.vstack([displacement, np.zeros((self._columns, 3))])
         # a flat source leaves the linear part undetermined across it: the least solution then
         self._coefficients = np.linalg.lstsq(system, right, rcond=1e-12)[0]
 
     def _linear(self, x: FloatArray) -> FloatArray:
-        return np.column_stack([np.ones(len(x)), (x - self._middle) / self._size])
+        return np.column_stack([np.ones(len(x)), (x - self._middle) / self._size])[:, : self._columns]
 
     def apply(self, points: FloatArray) -> FloatArray:
         """Carry points over.
