@@ -265,7 +265,10 @@ def test_adjustments_are_layered_on_the_result(run: Run, job: Path) -> None:
             {"part": "paw", "frame": 0, "move": [1, 0, 0]},
             "adjustment 0: no part 'paw'; parts are root, low, high",
         ),
-        ({"part": "root", "frame": 0}, "changes.json: adjustment 0: an adjustment needs move, to or turn"),
+        (
+            {"part": "root", "frame": 0},
+            "changes.json: adjustment 0: an adjustment needs move, to, turn",
+        ),
     ],
 )
 def test_wrong_adjustments(run: Run, job: Path, entry: Any, said: str) -> None:

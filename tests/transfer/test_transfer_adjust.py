@@ -223,6 +223,29 @@ def test_feet_stay_when_the_hips_move() -> None:
             assert distance(result)[:, owned(foot)].max() < 0.015
 
 
+@pytest.mark.parametrize(("side", "out"), [("left", 1.0), ("right", -1.0)])
+@pytest.mark.parametrize(("end", "middle"), [("hand", "forearm"), ("foot", "shin")])
+def test_elbows_and_knees_swivel_outwards(side: str, out: float, end: str, middle: str) -> None:
+    a = Adjustment(f"{side}_{end}", frame=KEY, swivel=25, **EASE)
+    result = moved(base(), a)
+    joint, tip, first = (
+        part_of(base(), f"{side}_{part}") for part in (middle, end, "upper_arm" if end == "hand" else "thigh")
+    )
+    V, W = frames(base()), frames(result)
+    assert_allclose(tip.points(W), tip.points(V), rtol=0, atol=1e-6)
+    step = (joint.points(W) - joint.points(V))[KEY]
+    assert out * step[0] > 0.005
+    axis = tip.points(V)[KEY] - first.points(V)[KEY]
+    assert abs(step @ axis) < 0.2 * np.linalg.norm(step) * np.linalg.norm(axis)
+    assert_array_equal(W[KEY + 6 :], V[KEY + 6 :])
+
+
+def test_only_limbs_swivel() -> None:
+    for part in ("head", "left_forearm", "root"):
+        with pytest.raises(ValueError, match="has no elbow or knee to swivel; name a hand or a foot"):
+            moved(base(), Adjustment(part, frame=KEY, swivel=10))
+
+
 def test_the_whole_body_turns_rigidly() -> None:
     result = moved(base(), Adjustment("root", frame=KEY, turn=(0, 70, 0), **EASE))
     V, W = frames(base())[KEY], frames(result)[KEY]

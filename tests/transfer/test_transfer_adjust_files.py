@@ -41,12 +41,20 @@ def test_a_file_keeps_everything(adjustments: tuple[Adjustment, ...], tmp_path: 
     eases=st.tuples(seconds, seconds, seconds),
     axes=st.sampled_from(["world", "body", "part"]),
     follow=st.sampled_from([None, True, False]),
+    swivel=st.none() | st.floats(-180, 180),
 )
 def test_records_are_read_back(
-    part: Any, frame: int, move: Any, turn: Any, eases: Any, axes: str, follow: bool | None
+    part: Any,
+    frame: int,
+    move: Any,
+    turn: Any,
+    eases: Any,
+    axes: str,
+    follow: bool | None,
+    swivel: float | None,
 ) -> None:
     a, b, c = eases
-    a = Adjustment(part, frame, None, move, None, turn, axes, a, b, c, follow)
+    a = Adjustment(part, frame, None, move, None, turn, axes, a, b, c, follow, swivel)
     assert Adjustment.from_record(json.loads(json.dumps(a.record()))) == a
 
 
@@ -102,7 +110,7 @@ def test_times_become_the_nearest_frame() -> None:
             {"part": "head", "frame": 1, "move": [0, 0, 1], "ease_out": float("nan")},
             "ease_out must be seconds",
         ),
-        ({"part": "head", "frame": 1}, "needs move, to or turn"),
+        ({"part": "head", "frame": 1}, "needs move, to, turn or swivel"),
         (
             {"part": "head", "frame": 1, "move": [0, 0, 1], "to": [0, 0, 1]},
             "move and to contradict each other",

@@ -13,7 +13,7 @@ from tempose.transfer.adjustments.curves import Key
 from tempose.transfer.adjustments.groups import Group, group_by_part
 from tempose.transfer.adjustments.layer import Layer
 from tempose.transfer.adjustments.parts import HIPS, Part, find_part, follows
-from tempose.transfer.adjustments.wanted import wanted_offsets, wanted_turns
+from tempose.transfer.adjustments.wanted import wanted_offsets, wanted_swivel, wanted_turns
 from tempose.transfer.from_skeleton import Prepared
 from tempose.typing import FloatArray, Progress, silent
 
@@ -101,7 +101,7 @@ def _carry_out(layer: Layer, group: Group) -> list[_Check]:
         else:
             layer.turn_part(part, turns)
     checks: list[_Check] = []
-    if any(a.moves for a in group.entries):
+    if any(a.moves or a.swivel is not None for a in group.entries):
         base = part.points(layer.frames)
         offsets, active = wanted_offsets(group, layer.rotations, base)
         wanted = base + offsets
@@ -109,8 +109,9 @@ def _carry_out(layer: Layer, group: Group) -> list[_Check]:
             layer.shift_body(offsets)
             missed = np.zeros(len(wanted))
         else:
-            follow = follows(part, group.entries[-1])
-            missed = layer.shift_part(part, wanted, active, follow)
+            swivel = wanted_swivel(group, len(wanted))
+            active = np.union1d(active, np.flatnonzero(swivel))
+            missed = layer.shift_part(part, wanted, active, follows(part, group.entries[-1]), swivel)
         checks = _checks(group, missed)
     return checks + _keep_feet(layer, group, feet, turns)
 

@@ -17,7 +17,7 @@ AXES = ("world", "body", "part")
 EASE = 0.4
 """Seconds in which an adjustment comes and goes unless told otherwise."""
 _KEYS = (
-    "part", "frame", "time", "move", "to", "turn", "axes", "ease_in", "ease_out", "hold", "follow",
+    "part", "frame", "time", "move", "to", "turn", "axes", "ease_in", "ease_out", "hold", "follow", "swivel",
 )  # fmt: skip
 
 
@@ -50,6 +50,9 @@ class Adjustment:
         Seconds for which it stays in full force after the key frame; with `to` the part stands still there.
     follow : bool, optional
         Whether a hand or foot turns with the forearm or shin that is moved. Hands do, feet do not.
+    swivel : float, optional
+        Degrees by which the elbow or knee turns about the line from shoulder or hip to the hand or foot,
+        which stays; positive outwards.
 
     Raises
     ------
@@ -73,6 +76,7 @@ class Adjustment:
     ease_out: float = EASE
     hold: float = 0.0
     follow: bool | None = None
+    swivel: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "part", _part(self.part))
@@ -85,8 +89,10 @@ class Adjustment:
                 object.__setattr__(self, name, _seconds(getattr(self, name), name))
         if self.move is not None and self.to is not None:
             raise ValueError("move and to contradict each other; give one of them")
-        if self.move is None and self.to is None and self.turn is None:
-            raise ValueError("an adjustment needs move, to or turn")
+        if self.move is None and self.to is None and self.turn is None and self.swivel is None:
+            raise ValueError("an adjustment needs move, to, turn or swivel")
+        if self.swivel is not None:
+            object.__setattr__(self, "swivel", float(as_floats(self.swivel, "swivel", ())))
         for name in ("move", "to", "turn"):
             value = getattr(self, name)
             if value is not None:

@@ -66,6 +66,30 @@ class LimbChain:
         beyond = rotate(Q[..., self.bone, :], self.beyond)
         return reach(self.limb, Q, shift, follow=follow, beyond=beyond if follow else None)
 
+    def swivelled(self, Q: FloatArray, angles: FloatArray) -> FloatArray:
+        """Turn the middle joint about the line between both ends, which stay.
+
+        Parameters
+        ----------
+        Q : (..., B, 4) float
+            Rotations of the bones.
+        angles : (...) float
+            Radians, right-handed about the line from the first joint to the last.
+
+        Returns
+        -------
+        (..., B, 4) ndarray
+            Rotations; hand or foot keep theirs.
+        """
+        limb, out = self.limb, np.array(Q, dtype=np.float64)
+        axis = rotate(Q[..., limb.upper, :], limb.second - limb.first)
+        axis = axis + rotate(Q[..., limb.lower, :], limb.end - limb.second)
+        axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
+        turn = from_rotation_vector(np.asarray(angles)[..., None] * axis)
+        for b in (limb.upper, limb.lower):
+            out[..., b, :] = multiply(turn, Q[..., b, :])
+        return out
+
     def attainable(self, Q: FloatArray, missing: FloatArray) -> FloatArray:
         """Tell which part of a missing displacement is worth asking for.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tempose.transfer.adjustments.adjustment import Adjustment
+from tempose.transfer.adjustments.chains import LimbChain
 from tempose.transfer.adjustments.curves import Key
 from tempose.transfer.adjustments.parts import Part, find_part
 from tempose.transfer.from_skeleton import Prepared
@@ -73,6 +74,8 @@ def group_by_part(job: Prepared, adjustments: Sequence[Adjustment], n_frames: in
 def _check_possible(part: Part, a: Adjustment) -> None:
     if a.turn is not None and part.bone is None and not part.whole:
         raise ValueError(f"{part.name} cannot be turned: no bone carries it")
+    if a.swivel is not None and not isinstance(part.chain, LimbChain):
+        raise ValueError(f"{part.name!r} has no elbow or knee to swivel; name a hand or a foot")
     if a.axes != "world" and part.bone is None:
         raise ValueError(f"axes {a.axes!r} need a skeleton as source; use 'world'")
     named = isinstance(a.part, str) and not part.whole

@@ -15,6 +15,7 @@ from tempose.rotations import (
     procrustes_rotation,
     rotate,
 )
+from tempose.transfer.adjustments.chains import LimbChain
 from tempose.transfer.adjustments.parts import Part, residual_field, rigid_vertices, turned_field
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.limb_ik import bones_below
@@ -121,7 +122,9 @@ class Layer:
         turned[:, below] = multiply(_short(turn)[:, None], turned[:, below])
         return turned, self._pose(block, turned)
 
-    def shift_part(self, part: Part, wanted: FloatArray, active: IntArray, follow: bool) -> FloatArray:
+    def shift_part(
+        self, part: Part, wanted: FloatArray, active: IntArray, follow: bool, swivel: FloatArray | None = None
+    ) -> FloatArray:
         """Bring a part's point to places: the bones reach for it, the surface takes up what they leave.
 
         Parameters
@@ -134,6 +137,8 @@ class Layer:
             In which frames.
         follow : bool
             Whether it turns with the bone that moves it.
+        swivel : (T,) float, optional
+            Radians by which elbow or knee turns about the line to the part, which a limb has.
 
         Returns
         -------
@@ -146,7 +151,10 @@ class Layer:
         for block in self._blocks(active, part.name):
             V = np.asarray(self.frames[block], dtype=np.float64)
             if part.chain is not None and moved is not None:
-                V = self._reach(part, V, block, wanted[block], follow, moved)
+                Q = self.rotations[block]
+                if swivel is not None and isinstance(part.chain, LimbChain):
+                    Q = part.chain.swivelled(Q, swivel[block])
+                V = self._reach(part, V, block, Q, wanted[block], follow, moved)
             left = wanted[block] - part.points(V)
             V += rest[:, None] * self._stretch(part, left)[:, None]
             missed[block] = np.linalg.norm(wanted[block] - part.points(V), axis=1)
@@ -154,11 +162,17 @@ class Layer:
         return missed
 
     def _reach(
-        self, part: Part, V: FloatArray, block: IntArray, wanted: FloatArray, follow: bool, weight: FloatArray
+        self,
+        part: Part,
+        V: FloatArray,
+        block: IntArray,
+        Q: FloatArray,
+        wanted: FloatArray,
+        follow: bool,
+        weight: FloatArray,
     ) -> FloatArray:
         assert part.chain is not None
-        Q = self.rotations[block]
-        before = self._pose(block, Q)
+        before = self._pose(block, self.rotations[block])
         got = part.points(V)
         shift = np.zeros_like(got)
         step, H = wanted - got, np.tile(np.eye(3), (len(block), 1, 1))

@@ -45,6 +45,37 @@ def wanted_turns(group: Group, Q: FloatArray) -> FloatArray:
     return total
 
 
+def wanted_swivel(group: Group, n_frames: int) -> FloatArray:
+    """Sum the swivels of an elbow or knee through time.
+
+    Parameters
+    ----------
+    group : Group
+        Adjustments of one hand or foot.
+    n_frames : int
+        Number of frames T.
+
+    Returns
+    -------
+    (T,) ndarray
+        Radians about the line from the body outwards; exactly 0 outside all windows.
+    """
+    chosen = [n for n, a in enumerate(group.entries) if a.swivel is not None]
+    name = group.part.name
+    # outwards: an elbow points back and a knee ahead, and sides mirror each other
+    sign = -1.0 if name.startswith("right_") != name.endswith(("foot", "toes")) else 1.0
+
+    def angles(key: Key, at: IntArray) -> FloatArray:
+        total = sum(float(group.entries[n].swivel or 0.0) for n in key.members)
+        return np.full((len(at), 3), sign * np.radians(total))
+
+    out = np.zeros(n_frames)
+    for runs in make_layers([_copy(group.keys[n], n) for n in chosen]):
+        for run in runs:
+            out += run_curve(run, angles, n_frames)[:, 0]
+    return out
+
+
 def _copy(key: Key, n: int) -> Key:
     return Key(key.first, key.last, key.before, key.after, key.pinned, [n])
 
