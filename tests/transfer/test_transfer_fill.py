@@ -98,13 +98,14 @@ def test_a_push_is_bounded_and_smooth() -> None:
     patch = waist(mesh)
     missing = np.linspace(0, 10 * volumes(mesh.vertices[None], mesh.faces)[0], 200)
     X = np.repeat(mesh.vertices[patch.vertices][None], 200, axis=0)
-    fill_patch(X, patch.faces, patch.bump, missing, CAP * patch.radius)
+    fill_patch(X, patch.faces, patch.bump, missing, CAP * patch.radius, 2)
     moved = np.linalg.norm(X - X[0], axis=2).max(axis=1)
     assert moved.max() <= CAP * patch.radius + 1e-12
     assert (np.diff(moved) >= -1e-12).all()
 
 
-def test_the_kernel_against_plain_arrays(rng) -> None:
+@pytest.mark.parametrize("smooth", [0, 3])
+def test_the_kernel_against_plain_arrays(rng, smooth: int) -> None:
     mesh = sphere(2)
     patch = make_patch(welded(mesh), np.arange(len(mesh.faces)), mesh.vertices[5], 0.8)
     X = mesh.vertices[patch.vertices] + 0.02 * rng.normal(size=(3, len(patch.vertices), 3))
@@ -115,10 +116,14 @@ def test_the_kernel_against_plain_arrays(rng) -> None:
         for i, j, k in patch.faces:
             area = np.cross(X[t, j] - X[t, i], X[t, k] - X[t, i]) / 6
             g[[i, j, k]] += area
-        length = np.linalg.norm(g, axis=1)
-        push = cap * np.tanh(missing[t] / (patch.bump @ length) / cap)
-        expected[t] += push * (patch.bump / length)[:, None] * g
-    fill_patch(X, patch.faces, patch.bump, missing, cap)
+        d = g
+        for _ in range(smooth):
+            d, before = np.zeros_like(g), d
+            for corners in patch.faces:
+                d[corners] += before[corners].sum(axis=0)
+        d = (patch.bump / np.linalg.norm(d, axis=1))[:, None] * d
+        expected[t] += cap * np.tanh(missing[t] / (d * g).sum() / cap) * d
+    fill_patch(X, patch.faces, patch.bump, missing, cap, smooth)
     assert_allclose(X, expected, rtol=0, atol=1e-12)
 
 

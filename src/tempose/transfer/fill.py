@@ -19,6 +19,8 @@ REACH = 0.5
 """Radius of a patch in lengths of the bone that starts at the joint."""
 CAP = 0.25
 """Furthest push in radii of the patch; it is approached softly, so that there is no jump in time."""
+SMOOTH = 4
+"""How often the directions of the push are averaged over the faces."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +90,10 @@ class VolumeFill:
 
     Notes
     -----
-    The volume inside a patch, its rim closed by fans, grows at the rate ``sum bump_i |g_i|`` when vertex i
-    moves by ``bump_i g_i / |g_i|``, with g the gradient of the volume (a third of the area vectors of the
-    faces round i). One Newton step along it, bounded by a share of the radius.
+    The volume inside a patch, its rim closed by fans, grows at the rate ``sum bump_i d_i . g_i`` when vertex
+    i moves by ``bump_i d_i``, with g the gradient of the volume (a third of the area vectors of the faces
+    round i) and d its direction, averaged over the faces so that creases open instead of folding. One Newton
+    step, bounded by a share of the radius.
     """
 
     def __init__(self, V: FloatArray, patches: list[Patch], strength: float = 1.0) -> None:
@@ -111,6 +114,6 @@ class VolumeFill:
         for patch, meter, rest in zip(self.patches, self._meters, self._rest):
             X = np.ascontiguousarray(V[:, patch.vertices])
             missing = self.strength * (rest - meter.volumes(X))
-            fill_patch(X, patch.faces, patch.bump, missing, CAP * patch.radius)
+            fill_patch(X, patch.faces, patch.bump, missing, CAP * patch.radius, SMOOTH)
             at, place = patch.copies
             V[:, at] = X[:, place]
