@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable
+from copy import copy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +16,11 @@ import scipy.sparse as sp
 
 from meshes import bumpy_body
 from tempose.clips import Mesh
+from tempose.embedding import embed_skin
 from tempose.geometry import cotangent_laplacian, cotangents
 from tempose.linalg import SparseCholesky
 from tempose.rotations import from_rotation_vector, to_matrix
+from tempose.samples import human_character
 from tempose.transfer import MotionTransfer, consistent_signs
 
 BONES = 18
@@ -73,48 +79,58 @@ def plain_numpy(mesh: Any, basis: np.ndarray, solver: SparseCholesky) -> Callabl
 
 WHAT = {
     "solve": "bare cholespy solve, 3 right-hand sides",
-    "frame": "one frame, whole call",
-    "batch": f"a frame of a batch of {BATCH}, 2 threads",
-    "batch, 1 thread": f"a frame of a batch of {BATCH}, 1 thread",
+    "frame": "one frame, whole call, single precision",
+    "frame, double": "one frame, whole call, double precision",
+    "batch": f"a frame of a batch of {BATCH}, single precision, 2 threads",
+    "batch, 1 thread": f"a frame of a batch of {BATCH}, single precision, 1 thread",
+    "batch, double": f"a frame of a batch of {BATCH}, double precision, 2 threads",
     "numpy": "one frame, plain numpy + prefactored cholespy",
-    "set-up": "factor and basis",
+    "set-up": "weld, link, order, factor, basis",
 }
+GOALS = {"frame": (1.5, 0.6), "batch": (0.5, 0.2)}
+SETUP_GOAL = (6.0, 3.0)
 
 
-def measure(mesh: Mesh) -> dict[str, float]:
-    """Seconds of every task on one mesh."""
+def measure(mesh: Mesh) -> tuple[dict[str, float], float]:
+    """Seconds of every task on one mesh, and the drift of single from double as a share of the height."""
     marks = marked(mesh)
     start = time.perf_counter()
-    solver = MotionTransfer(mesh, *marks, BONES)
+    single = MotionTransfer(mesh, *marks, BONES, precision="single")
     setup = time.perf_counter() - start
-    one_thread = MotionTransfer(mesh, *marks, BONES, workers=1)
+    double = MotionTransfer(mesh, *marks, BONES)
+    one_thread = copy(single)
+    one_thread.workers = 1
     pull = np.zeros(len(mesh.vertices))
     pull[0] = 1.0
     L = cotangent_laplacian(mesh.vertices, mesh.faces) + sp.diags_array(pull)
     bare = SparseCholesky(L, "cholespy")
     b = np.random.default_rng(1).normal(size=(len(mesh.vertices), 3))
-    Q, single = rotations(BATCH), rotations(BATCH)[7]
-    numpy_frame = plain_numpy(mesh, np.asarray(solver.basis), bare)
+    Q = rotations(BATCH)
+    numpy_frame = plain_numpy(mesh, np.asarray(double.basis), bare)
     tasks = {
         "solve": lambda: bare.solve(b),
-        "frame": lambda: solver.pose(single),
-        "batch": lambda: solver.pose(Q),
+        "frame": lambda: single.pose(Q[7]),
+        "frame, double": lambda: double.pose(Q[7]),
+        "batch": lambda: single.pose(Q),
         "batch, 1 thread": lambda: one_thread.pose(Q),
-        "numpy": lambda: numpy_frame(single),
+        "batch, double": lambda: double.pose(Q),
+        "numpy": lambda: numpy_frame(Q[7]),
     }
-    seconds = interleaved(tasks, 9 if len(mesh.faces) < 100_000 else 5)
-    seconds["batch"] /= BATCH
-    seconds["batch, 1 thread"] /= BATCH
-    return seconds | {"set-up": setup}
+    seconds = interleaved(tasks, 15 if len(mesh.faces) < 100_000 else 7)
+    for name in tasks:
+        seconds[name] /= BATCH if name.startswith("batch") else 1
+    drift = float(np.abs(single.pose(Q) - double.pose(Q)).max()) / mesh.height
+    return seconds | {"set-up": setup}, drift
 
 
-def run() -> list[dict[str, Any]]:
-    """Rows of the table, smallest mesh first; every ratio is against the bare solve on the same mesh."""
+def speed_rows(label: str, mesh: Mesh) -> list[dict[str, Any]]:
+    seconds, drift = measure(mesh)
     rows: list[dict[str, Any]] = []
-    for label, triangles in SIZES.items():
-        mesh = bumpy_body(triangles)
-        seconds = measure(mesh)
-        rows += [
+    for key, text in WHAT.items():
+        goal = GOALS.get(key)
+        if key == "set-up" and label == "300k":
+            goal = tuple(g / seconds["solve"] for g in SETUP_GOAL)
+        rows.append(
             {
                 "name": f"transfer/{key}/{label}",
                 "what": f"{text}, {len(mesh.faces)} triangles",
@@ -122,7 +138,62 @@ def run() -> list[dict[str, Any]]:
                 "ratio": seconds[key] / seconds["solve"],
                 "against": "cholespy solve",
                 "memory_mb": None,
+                "goal": goal,
             }
-            for key, text in WHAT.items()
-        ]
-    return rows
+        )
+    found = {"name": f"transfer/drift/{label}", "what": "largest distance of single from double, heights"}
+    return [*rows, found | {"value": f"{drift:.1e}", "goal": (5e-6, None)}]
+
+
+MEMORY = """
+import resource
+import numpy as np
+from bench_transfer import BONES, marked, rotations
+from meshes import bumpy_body
+from tempose.transfer import MotionTransfer
+mesh = bumpy_body(50_000)
+solver = MotionTransfer(mesh, *marked(mesh), BONES, precision="single")
+Q = np.tile(rotations(50), (20, 1, 1))
+V = np.zeros((len(Q), len(mesh.vertices), 3), dtype=np.float32)
+solver.pose_blocks(Q, V.__setitem__)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024**2, V.nbytes / 1024**3)
+"""
+
+
+def memory_row() -> dict[str, Any]:
+    """Peak of a process of its own that solves a clip and keeps every frame."""
+    here = Path(__file__).parent
+    done = subprocess.run(
+        [sys.executable, "-c", MEMORY], cwd=here, capture_output=True, text=True, check=True
+    )
+    peak, kept = (float(word) for word in done.stdout.split())
+    return {
+        "name": "transfer/memory/50k",
+        "what": f"peak of a process that solves and keeps 1000 frames ({kept:.2f} GB of it)",
+        "value": f"{peak:.2f} GB",
+        "memory_mb": round(1024 * peak),
+        "goal": (1.5, 0.7),
+    }
+
+
+def zero_click_row() -> dict[str, Any]:
+    """A skeleton placed inside a human of 25 000 vertices, and its weights."""
+    mesh = human_character(50_000).skin.mesh
+    embed_skin(human_character(5_000).skin.mesh)  # compiles
+    start = time.perf_counter()
+    embed_skin(mesh)
+    seconds = time.perf_counter() - start
+    return {
+        "name": "pairs/zero-click/25k",
+        "what": f"skeleton and weights inside a bare body, {len(mesh.vertices)} vertices",
+        "seconds": seconds,
+        "value": f"{seconds:.1f} s",
+        "goal": (10.0, 3.0),
+    }
+
+
+def run() -> list[dict[str, Any]]:
+    """Rows of the table, smallest mesh first; every ratio is against the bare solve on the same mesh."""
+    bodies = {label: bumpy_body(triangles) for label, triangles in SIZES.items()}
+    rows = [row for label, mesh in bodies.items() for row in speed_rows(label, mesh)]
+    return [*rows, memory_row(), zero_click_row()]

@@ -21,11 +21,16 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def table(rows: list[dict[str, Any]]) -> str:
-    lines = ["| name | what | ms | ratio | against |", "|---|---|---|---|---|"]
+    lines = [
+        "| name | what | found | ratio | against | to reach | stretch |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for r in rows:
-        lines.append(
-            f"| {r['name']} | {r['what']} | {1000 * r['seconds']:.1f} | {r['ratio']:.2f} | {r['against']} |"
-        )
+        value = r.get("value") or f"{1000 * r['seconds']:.2f} ms"
+        ratio = f"{r['ratio']:.2f}" if r.get("ratio") else ""
+        reach, stretch = (f"{g:.3g}" if g else "" for g in r.get("goal") or (None, None))
+        cells = (r["name"], r["what"], value, ratio, r.get("against", ""), reach, stretch)
+        lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
@@ -38,7 +43,7 @@ def main() -> None:
     for suite in [options.only] if options.only else SUITES:
         found = importlib.import_module(f"bench_{suite}").run()
         peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-        rows += [{**row, "memory_mb": row["memory_mb"] or round(peak)} for row in found]
+        rows += [{**row, "memory_mb": row.get("memory_mb") or round(peak)} for row in found]
         page = ROOT / "docs" / "benchmarks.md"
         text = page.read_text(encoding="utf-8")
         before, _, rest = text.partition(f"<!-- {suite} -->")

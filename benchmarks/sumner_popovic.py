@@ -2,9 +2,9 @@
 
     python benchmarks/sumner_popovic.py        prints both rows, writes the sheet to docs/gallery
 
-Correspondence by the non-rigid registration of trimesh, which implements section 4 of their paper; transfer by
-its section 3, one sparse least squares problem for the positions of the target's vertices and of a fourth vertex
-over every face, factorised once.
+Correspondence by the non-rigid registration of trimesh, which implements section 4 of their paper; transfer
+by its section 3, one sparse least squares problem for the positions of the target's vertices and of a fourth
+vertex over every face, factorised once.
 
 R. W. Sumner, J. Popović, "Deformation Transfer for Triangle Meshes", ACM TOG 23(3), 2004.
 """

@@ -190,7 +190,7 @@ def test_a_doubled_vertex_moves_with_its_twin(rng) -> None:
     assert_array_equal(V[:, i], V[:, j])
 
 
-def test_single_precision_is_nowhere_inside(rng) -> None:
+def test_double_precision_is_double_throughout(rng) -> None:
     mesh = sphere(1)
     solver = solver_for(mesh)
     Q = near_rotations(rng, (2, 4))
@@ -200,6 +200,22 @@ def test_single_precision_is_nowhere_inside(rng) -> None:
     tiny = 1e-11
     nudged = solver.pose(multiply(np.array([1.0, tiny, 0, 0]), Q))
     assert 0 < np.abs(nudged - V).max() < 100 * tiny
+
+
+@pytest.mark.parametrize("side", [20, 60, 120])
+def test_single_precision_stays_near_double_at_every_size(side: int, rng) -> None:
+    mesh, Q = sheet(side), near_rotations(rng, (3, 4))
+    single = solver_for(mesh, precision="single")
+    double = solver_for(mesh).pose(Q)
+    assert np.abs(single.pose(Q) - double).max() < 5e-6 * mesh.diagonal
+    # and nothing of it shows at rest, or where the whole is turned
+    rest = np.tile(IDENTITY, (2, 4, 1))
+    assert_allclose(single.pose(rest)[1], mesh.vertices, rtol=0, atol=1e-9 * mesh.diagonal)
+    R = Rotation.random(rng=rng)
+    turned = centred(single.pose(np.tile(wxyz(R), (4, 1))))
+    assert_allclose(turned, R.apply(centred(mesh.vertices)), rtol=0, atol=1e-9 * mesh.diagonal)
+    with pytest.raises(ValueError, match="precision must be 'double' or 'single', got 'half'"):
+        solver_for(mesh, precision="half")
 
 
 def test_the_anchor_is_a_rigid_frame_that_goes_where_it_is_told(rng) -> None:

@@ -116,3 +116,17 @@ def test_the_fast_way_is_the_slow_way(name: str, strength: float, rng) -> None:
     assert_allclose(solver.field(Q)[:, :, 0], q, rtol=0, atol=1e-9)
     fast = solver.pose(Q)[0]
     assert_allclose(fast - fast[0], V, rtol=0, atol=1e-9 * mesh.diagonal)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "frames"),
+    [(ZOO["sphere"](1), 3), (ZOO["sphere"](2), 2), (ZOO["sphere"](3), 1), (ZOO["pieces"](), 1)],
+)
+def test_single_precision_drifts_by_less_than_5e6_of_the_height(mesh: Mesh, frames: int, rng) -> None:
+    vertices, bones = marked(mesh, 5)
+    solver = MotionTransfer(mesh, vertices, bones, 5, precision="single")
+    Q = near_rotations(rng, (frames, 5), 100)
+    for V, rotations in zip(solver.pose(Q), Q):
+        slow = slow_pose(mesh, vertices, bones, solver.links.pairs, rotations, 0.0)[1]
+        drift = V - slow
+        assert np.abs(drift - drift.mean(axis=0)).max() < 5e-6 * mesh.height
