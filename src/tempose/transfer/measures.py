@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from tempose.geometry import weld
-from tempose.metrics import direction_angles, edge_ratios, flipped_percent, folded_percent, penetration, skate
+from tempose.metrics import direction_angles, edge_ratios, folded_percent, penetration, skate
 from tempose.metrics import volume_change as change_of_volume
-from tempose.rotations import normalise
 from tempose.transfer.bones import Bones, split_role
 from tempose.transfer.feet import Feet
+from tempose.transfer.flip_kernel import FlipCounter
 from tempose.transfer.frames import gather
 from tempose.transfer.joint_regressor import apply_regressor, regress_points
 from tempose.transfer.marks import RIGID_PARTS
@@ -58,13 +58,13 @@ def distortion_measures(
     """
     F, V_rest = solver.mesh.faces, solver.mesh.vertices
     ratios = edge_ratios(V, F, V_rest, faces=faces)
+    flips = FlipCounter(F, V_rest)
     flipped, norms, where = np.zeros(len(V)), np.ones(len(V)), np.zeros(len(V), dtype=np.int64)
     for t in range(0, len(V), _BLOCK):
-        q = solver.field(Q[t : t + _BLOCK], references, t).transpose(2, 0, 1)
-        length = np.linalg.norm(q, axis=-1)
-        norms[t : t + _BLOCK], where[t : t + _BLOCK] = length.min(axis=1), length.argmin(axis=1)
-        turns = normalise(q[:, F].sum(axis=2))
-        flipped[t : t + _BLOCK] = flipped_percent(V[t : t + _BLOCK], F, V_rest, turns)
+        q = solver.field(Q[t : t + _BLOCK], references, t)
+        length = np.linalg.norm(q, axis=1)
+        norms[t : t + _BLOCK], where[t : t + _BLOCK] = length.min(axis=0), length.argmin(axis=0)
+        flipped[t : t + _BLOCK] = flips.percent(V[t : t + _BLOCK], q)
     return {
         "edge_ratio": [ratios.p1, ratios.p99],
         "edge_ratio_max": ratios.max,
