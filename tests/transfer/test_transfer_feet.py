@@ -13,7 +13,8 @@ from tempose.metrics import detect_contacts
 from tempose.samples.skeletons import animal_skeleton, human_skeleton
 from tempose.samples.walk import walk
 from tempose.transfer.bones import Bones, make_bones
-from tempose.transfer.feet import bone_feet, flat_stance, mesh_feet
+from tempose.transfer.feet import bone_feet, flat_stance
+from tempose.transfer.mesh_feet import mesh_feet
 from tempose.transfer.pose import BonePose
 from tempose.transfer.reference import bone_motion, bone_rest
 

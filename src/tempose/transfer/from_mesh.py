@@ -16,8 +16,8 @@ from scipy.sparse.csgraph import (
 from tempose.clips import Mesh, MeshClip
 from tempose.geometry import edge_list, k_rings
 from tempose.transfer.fabric import Fabric
-from tempose.transfer.feet import mesh_feet
 from tempose.transfer.from_skeleton import Prepared
+from tempose.transfer.mesh_feet import mesh_feet
 from tempose.transfer.mesh_source import RINGS, face_patches, patch_rotations, vertex_patches
 from tempose.transfer.motion_transfer import MotionTransfer
 from tempose.transfer.pairs import Pairs

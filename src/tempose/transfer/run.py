@@ -12,6 +12,7 @@ from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.adjustments.groups import group_by_part
 from tempose.transfer.adjustments.on_result import adjust
+from tempose.transfer.contact_report import contact_facts, contact_warnings
 from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.lead import LEAD
@@ -21,8 +22,6 @@ from tempose.transfer.pairs import Pairs
 from tempose.transfer.placing import (
     Contacts,
     Placed,
-    contact_facts,
-    contact_warnings,
     place_frames,
     with_contacts,
 )
