@@ -165,3 +165,8 @@ def test_hands_are_lifted_by_their_arms() -> None:
 def test_a_ground_that_is_no_height_is_refused() -> None:
     with pytest.raises(ValueError, match="ground must be a height in metres, got nan"):
         transfer_motion(reaching_down(), human_body(), ground=float("nan"))
+
+
+def test_contacts_of_another_kind_are_refused_not_ignored() -> None:
+    with pytest.raises(ValueError, match="contacts must be bool of shape"):
+        transfer_motion(walking(), t_body(), contacts=[[0, 12]])  # type: ignore[arg-type]

@@ -2,8 +2,8 @@
 
 After de Aguiar, Zayer, Theobalt, Seidel, Magnor, "A Simple Framework for Natural Animation of Digitized
 Models", SIBGRAPI 2007. The files, in the order in which data flows: bones, pairs, marks; reference,
-alignment, signs; links, fields, glue; placement, measures. Tools for placing pairs by hand stand in
-`tempose.transfer.correspondence`.
+alignment, signs; links, fields, glue; contacts, feet, legs, soles, placement, foot_hold, standing, placing;
+measures. Tools for placing pairs by hand stand in `tempose.transfer.correspondence`.
 """
 
 from tempose.transfer.adjustments.adjustment import Adjustment

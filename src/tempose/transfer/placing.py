@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -154,7 +153,7 @@ def with_contacts(job: Prepared, contacts: Contacts, n_frames: int, ground: floa
         if not np.isfinite(ground):
             raise ValueError(f"ground must be a height in metres, got {ground}")
         job = replace(job, feet=replace(job.feet, ground=float(ground)))
-    if not isinstance(contacts, (Mapping, np.ndarray)):
+    if isinstance(contacts, bool):
         return job
     mask = given_contacts(contacts, job.feet.names, n_frames, job.first_frame)
     return replace(job, feet=replace(job.feet, contact=mask, held=mask))
