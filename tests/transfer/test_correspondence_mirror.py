@@ -71,6 +71,7 @@ def test_opposites_are_free_of_numbering(rng: np.random.Generator) -> None:
     assert_array_equal(face_of[find_symmetry(rest).faces], find_symmetry(other).faces[face_of])
 
 
+@pytest.mark.slow
 def test_a_scan_without_symmetric_triangles_goes_by_place() -> None:
     body = human_body().mesh
     squeezed = body.with_vertices(body.vertices * [1, 1, 1.001])
