@@ -32,32 +32,35 @@ def sees(
     (k,) ndarray of bool
         Whether every cell on the way is inside; the last one and a half before the surface do not count.
     """
-    seen = np.ones(len(starts), dtype=np.bool_)
-    shape = np.array(inside.shape)
+    seen = np.zeros(len(starts), dtype=np.bool_)
     for i in range(len(starts)):
-        way = ends[i] - starts[i]
-        length = np.sqrt((way**2).sum())
-        steps = int(np.ceil(2 * (length - _NEAR_SURFACE)))
-        here = np.zeros(3, dtype=np.int64)
-        for a in range(3):
-            here[a] = int(np.round(starts[i, a]))
-        for s in range(1, steps + 1):
-            share = (length - _NEAR_SURFACE) / length * s / steps
-            for a in range(3):
-                there = int(np.round(starts[i, a] + share * way[a]))
-                if there == here[a]:
-                    continue
-                low = min(there, here[a])
-                if walled and 0 <= low < shape[a]:
-                    at = here.copy()
-                    at[a] = low
-                    if walls[a, at[0], at[1], at[2]]:
-                        seen[i] = False
-                here[a] = there
-                if there < 0 or there >= shape[a]:
-                    seen[i] = False
-                    break
-            if not seen[i] or not inside[here[0], here[1], here[2]]:
-                seen[i] = False
-                break
+        seen[i] = _line(inside, walls, walled, starts[i], ends[i])
     return seen
+
+
+@njit(cache=True, nogil=True)
+def _line(inside: BoolArray, walls: BoolArray, walled: bool, start: FloatArray, end: FloatArray) -> bool:
+    way = end - start
+    length = np.sqrt((way**2).sum())
+    steps = int(np.ceil(2 * (length - _NEAR_SURFACE)))
+    here = np.zeros(3, dtype=np.int64)
+    for a in range(3):
+        here[a] = int(np.round(start[a]))
+        if here[a] < 0 or here[a] >= inside.shape[a]:
+            return False
+    for s in range(1, steps + 1):
+        share = (length - _NEAR_SURFACE) / length * s / steps
+        for a in range(3):
+            there = int(np.round(start[a] + share * way[a]))
+            if there == here[a]:
+                continue
+            if there < 0 or there >= inside.shape[a]:
+                return False
+            low = here.copy()
+            low[a] = min(there, here[a])
+            if walled and walls[a, low[0], low[1], low[2]]:
+                return False
+            here[a] = there
+        if not inside[here[0], here[1], here[2]]:
+            return False
+    return True

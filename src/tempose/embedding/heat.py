@@ -11,8 +11,7 @@ from scipy.spatial import KDTree
 from tempose._validate import as_floats
 from tempose.clips import Mesh, Skeleton
 from tempose.embedding._sight import sees
-from tempose.embedding.attempts import read_body
-from tempose.embedding.cells import Cells
+from tempose.embedding.cells import Cells, make_cells
 from tempose.embedding.embedding import Embedding
 from tempose.embedding.segments import bone_segments, nearest_on_segments
 from tempose.embedding.solid import make_solid
@@ -28,6 +27,7 @@ from tempose.linalg import SparseCholesky
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 _TRIED = 4
+_TIE = 1e-6
 _LEAST_DISTANCE = 1e-3
 _LEAST_CONDUCTANCE = 1e-6
 
@@ -71,12 +71,14 @@ def heat_weights(mesh: Mesh, bones: Embedding | Skeleton | Any, *, cells: Cells 
     V, F = mesh.vertices[first], inverse[mesh.faces]
     F = F[(F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])]
     if cells is None:
-        cells = read_body(make_solid(V, F)).cells
-    bone, distance = nearest_seen(V, segments, cells)
-    return _equilibrium(V, F, bone, distance, len(segments), mesh.diagonal)[inverse]
+        solid = make_solid(V, F)
+        cells = make_cells(solid, solid.walls) or make_cells(solid, None)
+        assert cells is not None
+    share, distance = nearest_seen(V, segments, cells)
+    return _equilibrium(V, F, share, distance, mesh.diagonal)[inverse]
 
 
-def nearest_seen(V: FloatArray, segments: FloatArray, cells: Cells) -> tuple[IntArray, FloatArray]:
+def nearest_seen(V: FloatArray, segments: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]:
     """Nearest bone that is seen from each vertex.
 
     Parameters
@@ -90,8 +92,9 @@ def nearest_seen(V: FloatArray, segments: FloatArray, cells: Cells) -> tuple[Int
 
     Returns
     -------
-    bone : (n,) ndarray of int
-        Among the four nearest; -1 where none is seen.
+    share : (n, B) ndarray
+        1 for the nearest seen among the four nearest bones, shared where several are as near, as at a
+        joint; a row of zeros where none is seen.
     distance : (n,) ndarray
         How far it is.
     """
@@ -108,13 +111,17 @@ def nearest_seen(V: FloatArray, segments: FloatArray, cells: Cells) -> tuple[Int
         ends = (V[open_] - solid.origin) / solid.spacing
         seen = sees(solid.inside, walls, cells.walls is not None, starts, ends)
         bone[open_[seen]] = b[seen]
-    return bone, distances[rows, np.maximum(bone, 0)]
+    distance = distances[rows, np.maximum(bone, 0)]
+    share = ((distances <= (1 + _TIE) * distance[:, None]) & (bone >= 0)[:, None]).astype(np.float64)
+    # what is nearer than the nearest seen is not seen itself
+    share[distances < (1 - _TIE) * distance[:, None]] = 0.0
+    return share / np.maximum(share.sum(axis=1, keepdims=True), 1.0), distance
 
 
 def _equilibrium(
-    V: FloatArray, F: IntArray, bone: IntArray, distance: FloatArray, B: int, diagonal: float
+    V: FloatArray, F: IntArray, share: FloatArray, distance: FloatArray, diagonal: float
 ) -> FloatArray:
-    heated = bone >= 0
+    heated = share.sum(axis=1) > 0
     reached = _reached(V, F, heated)
     if not reached.any():
         raise ValueError("no bone is seen from any vertex; the skeleton lies outside the mesh")
@@ -128,10 +135,8 @@ def _equilibrium(
     edges = edge_list(F)
     L = L + edge_laplacian(edges, np.full(len(edges), _LEAST_CONDUCTANCE), len(V))
     A = (L + sp.diags_array(heat)).tocsr()[rows][:, rows]
-    source = np.zeros((len(V), B))
-    source[heated, bone[heated]] = heat[heated]
-    weights = np.zeros((len(V), B))
-    weights[rows] = np.maximum(SparseCholesky(A).solve(source[rows]), 0.0)
+    weights = np.zeros(share.shape)
+    weights[rows] = np.maximum(SparseCholesky(A).solve((heat[:, None] * share)[rows]), 0.0)
     rest = np.flatnonzero(~reached)
     if len(rest):
         weights[rest] = weights[rows[KDTree(V[rows]).query(V[rest])[1]]]

@@ -14,6 +14,7 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 CELLS = 160
 """Cells along the longest extent."""
+_MOST_CELLS = 250_000
 _MARGIN = 5
 # an offset that no vertex of a modelled mesh hits, so that no line passes through an edge
 _SHIFT = np.array([0.4142135, 0.3178372, 0.2360679])
@@ -67,8 +68,10 @@ class Solid:
         (...) ndarray
             Trilinear in the grid.
         """
-        where = np.moveaxis((np.asarray(points) - self.origin) / self.spacing, -1, 0)
-        return ndimage.map_coordinates(self.depth, where, order=1, mode="constant")
+        points = np.asarray(points, dtype=np.float64)
+        where = (points.reshape(-1, 3) - self.origin).T / self.spacing
+        depth = ndimage.map_coordinates(self.depth, where, order=1, mode="constant")
+        return np.asarray(depth).reshape(points.shape[:-1])
 
 
 def winding_numbers(V: FloatArray, F: IntArray, shape: tuple[int, ...]) -> tuple[FloatArray, BoolArray]:
@@ -127,7 +130,7 @@ def make_solid(V: FloatArray, F: IntArray, cells: int = CELLS) -> Solid:
     F : (m, 3) int
         Faces.
     cells : int, default 160
-        Cells along the longest extent.
+        Cells along the longest extent; fewer where more than 250 000 would lie inside.
 
     Returns
     -------
@@ -144,17 +147,28 @@ def make_solid(V: FloatArray, F: IntArray, cells: int = CELLS) -> Solid:
     if not len(used) or extent.max() <= 0:
         raise ValueError(f"a skeleton needs a mesh with extent, got {len(F)} faces of extent {extent}")
     spacing = float(extent.max()) / cells
-    origin = used.min(axis=0) - (_MARGIN + _SHIFT) * spacing
-    shape = tuple(int(np.ceil(e / spacing)) + 2 * _MARGIN + 1 for e in extent)
-    winding, walls = winding_numbers((V - origin) / spacing, np.asarray(F), shape)
-    # a piece turned inside out winds -1 times
-    inside = np.abs(winding) > 0.5
+    origin, inside, walls = _fill(V, F, used.min(axis=0), extent, spacing)
+    count = int(inside.sum())
+    if count > _MOST_CELLS:
+        # a plump body fills the grid that a person leaves nearly empty
+        spacing *= (count / _MOST_CELLS) ** (1 / 3)
+        origin, inside, walls = _fill(V, F, used.min(axis=0), extent, spacing)
     if not inside.any():
         raise ValueError("the mesh encloses no volume; its surface may be open or folded flat")
     inside, bridged, lost = _one_piece(inside)
     distance: Any = ndimage.distance_transform_edt(inside)
     depth = distance * spacing - 0.5 * spacing * inside
     return Solid(inside, origin, spacing, np.maximum(depth, 0.0), walls, bridged, lost)
+
+
+def _fill(
+    V: FloatArray, F: IntArray, low: FloatArray, extent: FloatArray, spacing: float
+) -> tuple[FloatArray, BoolArray, BoolArray]:
+    origin = low - (_MARGIN + _SHIFT) * spacing
+    shape = tuple(int(np.ceil(e / spacing)) + 2 * _MARGIN + 1 for e in extent)
+    winding, walls = winding_numbers((V - origin) / spacing, np.asarray(F), shape)
+    # a piece turned inside out winds -1 times
+    return origin, np.abs(winding) > 0.5, walls
 
 
 def _one_piece(inside: BoolArray) -> tuple[BoolArray, int, float]:
