@@ -160,3 +160,15 @@ def test_doubt_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(embedded_pairs, "embed_dressed", lambda mesh: (skin, replace(doubtful, penalty=3.0)))
     with pytest.raises(ValueError, match=r"penalty 3\.0.*hands not found"):
         transfer_motion(walking(), human_body().mesh)
+
+
+def test_a_skin_whose_joints_have_no_names_is_looked_into() -> None:
+    body = human_body()
+    s = body.skeleton
+    blank = tuple(f"joint_{k}" for k in range(s.n_joints))
+    odd = SkinnedMesh(
+        body.mesh, Skeleton(blank, s.parents, s.offsets, s.rest_rotations, s.tips), body.weights
+    )
+    result = transfer_motion(walking(), odd, measure=False)
+    assert_array_equal(result.clip.vertices, walked().clip.vertices)
+    assert "not known by their names" in result.report["warnings"][0]

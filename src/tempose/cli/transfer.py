@@ -120,6 +120,9 @@ def summary_rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         Name and value.
     """
     rows: list[tuple[str, str]] = []
+    if report.get("embedding"):
+        penalty = report["embedding"]["penalty"]
+        rows.append(("skeleton placed inside", f"penalty {penalty:.2f}, doubtful above 1"))
     if report.get("bone_direction_deg"):
         angles = report["bone_direction_deg"]
         rows.append(("bone directions off by", f"{angles['mean']:.1f} deg mean, {angles['max']:.1f} at most"))
