@@ -138,6 +138,7 @@ def test_a_skirt_does_not_hide_the_body_beneath() -> None:
     assert len(skin.weights) == len(dressed.vertices)
 
 
+@pytest.mark.slow
 def test_what_is_no_human_is_refused_by_its_measure() -> None:
     with pytest.raises(ValueError, match=r"does not look human: .* penalty \d") as caught:
         transfer_motion(walking(), tube())
