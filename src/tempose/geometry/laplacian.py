@@ -28,15 +28,22 @@ def cotangents(V: FloatArray, F: IntArray, limit: float = 1e4) -> FloatArray:
     (m, 3) ndarray
         ``cot(angle at corner k) / 2``, which belongs to the edge ``(F[:, k+1], F[:, k+2])``.
     """
-    corners = np.asarray(V, dtype=np.float64)[F]
-    half = np.zeros(F.shape)
-    double_area = 2 * face_areas(V, F)
-    longest = ((corners - np.roll(corners, -1, axis=1)) ** 2).sum(axis=2).max(axis=1, initial=0.0)
+    V = np.asarray(V, dtype=np.float64)
+    a, b, c = (V[F[:, k]] for k in range(3))
+    opposite = (c - b, a - c, b - a)
+    longest = np.max([_dots(e, e) for e in opposite], axis=0, initial=0.0)
+    normals = np.cross(opposite[1], opposite[2])
+    double_area = np.sqrt(_dots(normals, normals))
     fine = double_area > 1e-12 * longest
+    half = np.zeros(F.shape)
     for k in range(3):
-        a, b = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        np.divide(0.5 * np.sum(a * b, axis=1), double_area, out=half[:, k], where=fine)
+        dots = _dots(opposite[(k + 1) % 3], opposite[(k + 2) % 3])
+        np.divide(-0.5 * dots, double_area, out=half[:, k], where=fine)
     return np.clip(half, -limit, limit)
+
+
+def _dots(x: FloatArray, y: FloatArray) -> FloatArray:
+    return np.einsum("mc,mc->m", x, y)
 
 
 def edge_laplacian(edges: IntArray, weights: FloatArray, n: int) -> Any:

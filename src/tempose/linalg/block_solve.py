@@ -107,12 +107,16 @@ def solve_8(
     for s in range(count):
         w, begin = first[s + 1] - first[s], k * first[s]
         at = place[s] + (below[s] - own[s]) * w
+        # eight sides of all columns side by side: the inner loop then walks through a few kilobytes
+        for j in range(w):
+            for c in range(0, k, 8):
+                store(T, c * w + 8 * j, load8(X, begin + k * j + c))
         for r in range(below[s], own[s + 1], 4):
             i0, i1, i2, i3 = k * rows[r], k * rows[r + 1], k * rows[r + 2], k * rows[r + 3]
             for c in range(0, k, 8):
                 y0, y1, y2, y3 = load8(X, i0 + c), load8(X, i1 + c), load8(X, i2 + c), load8(X, i3 + c)
                 for j in range(w):
-                    x = load8(X, begin + k * j + c)
+                    x = load8(T, c * w + 8 * j)
                     y0 = plus_times(y0, item(blocks, at + j), x)
                     y1 = plus_times(y1, item(blocks, at + w + j), x)
                     y2 = plus_times(y2, item(blocks, at + 2 * w + j), x)
@@ -122,17 +126,22 @@ def solve_8(
                 store(X, i2 + c, y2)
                 store(X, i3 + c, y3)
             at += 4 * w
+    nothing = alike(load8(T, 0), T.dtype.type(0.0))
     for s in range(count - 1, -1, -1):
         w, begin, at = first[s + 1] - first[s], k * first[s], place[s]
-        T[: k * w] = 0
+        for j in range(0, k * w, 8):
+            store(T, j, nothing)
         for r in range(own[s], own[s + 1], 4):
             i0, i1, i2, i3 = k * rows[r], k * rows[r + 1], k * rows[r + 2], k * rows[r + 3]
             for c in range(0, k, 8):
                 x0, x1, x2, x3 = load8(X, i0 + c), load8(X, i1 + c), load8(X, i2 + c), load8(X, i3 + c)
                 for j in range(w):
-                    y = plus_times(load8(T, k * j + c), item(blocks, at + j), x0)
+                    y = scaled(item(blocks, at + j), x0)
                     y = plus_times(y, item(blocks, at + w + j), x1)
                     y = plus_times(y, item(blocks, at + 2 * w + j), x2)
-                    store(T, k * j + c, plus_times(y, item(blocks, at + 3 * w + j), x3))
+                    y = plus_times(y, item(blocks, at + 3 * w + j), x3)
+                    store(T, c * w + 8 * j, load8(T, c * w + 8 * j) + y)
             at += 4 * w
-        X[begin : begin + k * w] = T[: k * w]
+        for j in range(w):
+            for c in range(0, k, 8):
+                store(X, begin + k * j + c, load8(T, c * w + 8 * j))
