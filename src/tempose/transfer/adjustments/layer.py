@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,11 +15,12 @@ from tempose.rotations import (
     procrustes_rotation,
     rotate,
 )
-from tempose.transfer.adjustments.chains import LimbChain
-from tempose.transfer.adjustments.parts import Part, residual_field, rigid_vertices, turned_field
+from tempose.transfer.adjustments.limb_chain import LimbChain
+from tempose.transfer.adjustments.part_fields import residual_field, rigid_vertices, turned_field
+from tempose.transfer.adjustments.parts import Part
+from tempose.transfer.adjustments.posing import job_with, pose_frames
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.limb_ik import bones_below
-from tempose.transfer.references import References, choose_references
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 BLOCK = 16
@@ -106,7 +107,7 @@ class Layer:
         weight = turned_field(self.job, part.bone)[:, None]
         core = rigid_vertices(self.job, part.bone)
         for block in self._blocks(np.flatnonzero(turns.any(axis=1)), part.name):
-            before = self._pose(block, self.rotations[block])
+            before = pose_frames(self.job, self.rotations, block, self.rotations[block])
             asked = turn = from_rotation_vector(turns[block])
             turned, after = self._turned(block, below, turn)
             for _ in range(2 if len(core) else 0):
@@ -120,7 +121,7 @@ class Layer:
     def _turned(self, block: IntArray, below: IntArray, turn: FloatArray) -> tuple[FloatArray, FloatArray]:
         turned = np.array(self.rotations[block])
         turned[:, below] = multiply(_short(turn)[:, None], turned[:, below])
-        return turned, self._pose(block, turned)
+        return turned, pose_frames(self.job, self.rotations, block, turned)
 
     def shift_part(
         self, part: Part, wanted: FloatArray, active: IntArray, follow: bool, swivel: FloatArray | None = None
@@ -172,7 +173,7 @@ class Layer:
         weight: FloatArray,
     ) -> FloatArray:
         assert part.chain is not None
-        before = self._pose(block, self.rotations[block])
+        before = pose_frames(self.job, self.rotations, block, self.rotations[block])
         got = part.points(V)
         shift = np.zeros_like(got)
         step, H = wanted - got, np.tile(np.eye(3), (len(block), 1, 1))
@@ -181,7 +182,7 @@ class Layer:
         for _ in range(_PASSES):
             shift = shift + step
             turned = part.chain.move(Q, shift, follow)
-            moved = V + weight[:, None] * (self._pose(block, turned) - before)
+            moved = V + weight[:, None] * (pose_frames(self.job, self.rotations, block, turned) - before)
             last, got = got, part.points(moved)
             H = _secant(H, step, got - last)
             missing = part.chain.attainable(turned, wanted - got)
@@ -199,33 +200,6 @@ class Layer:
         over = np.maximum(length - free, 0.0)
         allowed = np.where(over > 0, free + free * np.tanh(over / free), length)
         return left * np.divide(allowed, length, out=np.ones_like(length), where=length > 0)
-
-    def _pose(self, block: IntArray, Q: FloatArray) -> FloatArray:
-        """Solve some frames that follow each other."""
-        whole = np.array(self.rotations)
-        whole[block] = Q
-        Q = self._columns(whole)[block]
-        out = np.zeros((len(block), len(self.job.solver.mesh.vertices), 3))
-
-        def receive(part: slice, V: FloatArray) -> None:
-            out[part] = V
-
-        self.job.solver.pose_blocks(Q, receive, self._references(block, Q))
-        return out
-
-    def _references(self, block: IntArray, Q: FloatArray) -> References | None:
-        """Carry the reference poses of the clip over to some frames with other rotations."""
-        references = self.job.references
-        if references is None:
-            return None
-        turns, before = np.array(Q), np.searchsorted(references.frames, block, side="left") - 1
-        for k, i in enumerate(before):
-            if i >= 0:
-                turns[k] = multiply(Q[k], conjugate(self.job.rotations[references.frames[i]]))
-        return References(references.frames - block[0], references.fields, turns)
-
-    def _columns(self, Q: FloatArray) -> FloatArray:
-        return Q if self.job.columns is None else self.job.columns.rotations(Q)
 
     def _blocks(self, active: IntArray, stage: str) -> Iterator[IntArray]:
         """Cut frames into runs without gaps, none longer than a block."""
@@ -245,10 +219,7 @@ class Layer:
         Prepared
             For measures and further layers.
         """
-        turned = replace(self.job, rotations=self._columns(self.rotations))
-        if turned.references is None:
-            return turned
-        return replace(turned, references=choose_references(turned.solver.spread, turned.rotations))
+        return job_with(self.job, self.rotations)
 
 
 def _short(q: FloatArray) -> FloatArray:
