@@ -100,13 +100,13 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_the_clip(tmp_path: Path) -> None:
-    """22500 vertices: 200 more frames are 52 MB as float32 and cost next to nothing."""
+    """22500 vertices: 200 more frames are 52 MB as float32; only what lies near the feet is kept of them."""
     peak: list[float] = []
     for frames in (100, 300):
         code = LONG.format(frames=frames, scratch=str(tmp_path), out=tmp_path / "out.npz")
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         peak.append(int(done.stdout.split()[-1]) / 1024)
-    assert peak[1] - peak[0] < 15, peak
+    assert peak[1] - peak[0] < 26, peak
 
 
 def test_a_clip_on_disk_can_be_saved(tmp_path: Path) -> None:
