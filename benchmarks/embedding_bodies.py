@@ -1,4 +1,4 @@
-"""Human meshes with known joints for the embedding: rest poses, T-poses, frames of walks, and hard versions."""
+"""Human meshes with known joints for the embedding: rest poses, T-poses, strides, and hard versions."""
 
 from __future__ import annotations
 
@@ -46,17 +46,14 @@ def joints_of(who: SkinnedMesh, positions: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def roles_of(who: SkinnedMesh) -> dict[str, int]:
-    roles = find_roles(who.skeleton)
-    if roles or "leg_joint_L_1" not in who.skeleton.names:
-        return roles
-    # CesiumMan counts its joints: legs from the hip, arms from the clavicle
-    names = {
-        "hips": "torso_joint_1",
-        "spine": "torso_joint_2",
-        "neck": "neck_joint_1",
-        "head": "neck_joint_2",
-    }
-    return {role: who.skeleton.index(n) for role, n in names.items() if n in who.skeleton.names}
+    if who.skeleton.names[0] != "joint_0":
+        return find_roles(who.skeleton)
+    # CesiumMan's joints have no names
+    arm, leg = ("upper_arm", "forearm", "hand"), ("thigh", "shin", "foot", "toes")
+    roles = {"hips": 0, "spine": 1, "neck": 3, "head": 4}
+    for parts, first, side in ((arm, 5, "left"), (arm, 8, "right"), (leg, 11, "left"), (leg, 15, "right")):
+        roles |= {f"{side}_{part}": first + i for i, part in enumerate(parts)}
+    return roles
 
 
 def rest(name: str) -> Case:

@@ -15,7 +15,7 @@ from tempose.embedding.solid import Solid
 from tempose.embedding.spheres import pack_spheres
 
 _GOOD = 0.8
-_NECKS = (0.5, 0.75)
+_NECKS, _CUT = (0.5, 0.75), 1.25
 
 
 @dataclass(frozen=True)
@@ -84,4 +84,6 @@ def _attempt(cells: Cells, reading: str) -> Attempt:
         return Attempt(cells, reading, len(found.cells))
     limbs = cut_limbs(cells, ends)
     penalty, terms = whole_penalty(ends, limbs)
+    # what had to be cut to look human is trusted less
+    penalty *= _CUT if reading == "necks" else 1.0
     return Attempt(cells, reading, len(found.cells), ends, limbs, penalty, terms)

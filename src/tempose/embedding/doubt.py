@@ -37,8 +37,11 @@ def whole_penalty(ends: Ends, limbs: Limbs) -> tuple[float, dict[str, float]]:
     terms = dict(ends.terms)
     terms["crotch"] = (limbs.legs[0].start / ends.size - _CROTCH) / _CROTCH_SPREAD
     terms["armpits"] = (limbs.pit / ends.size - _PIT) / _PIT_SPREAD
+    square = float(np.mean(np.square(list(terms.values()))))
+    # of most bodies 0, so it may add but must not dilute
     terms["armpits alike"] = (limbs.arms[0].start - limbs.arms[1].start) / ends.size / _PITS_ALIKE
-    return float(np.sqrt(np.mean(np.square(list(terms.values()))))) / DOUBTFUL, terms
+    square += terms["armpits alike"] ** 2 / len(terms)
+    return float(np.sqrt(square)) / DOUBTFUL, terms
 
 
 def doubts(

@@ -1,0 +1,93 @@
+"""Embedded joints against true ones, humans against animals: tables in markdown.
+
+    python benchmarks/results_embedding.py            both tables
+    python benchmarks/results_embedding.py makehuman  cases whose name begins so
+
+Real bodies are found through TEMPOSE_DATA, else beside the checkout.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+
+from embedding_bodies import CASES, Case, crane, others
+from tempose.clips import Mesh
+from tempose.embedding import Embedding, embed_skeleton, heat_weights
+
+STATURE = {"makehuman": 1.666, "male": 1.830, "sample": 1.750, "cesium": 1.507}
+COLUMNS = ("body", "median %", "worst %", "worst joint", "sides", "penalty", "up", "reading", "seconds")
+
+
+def seconds_of(mesh: Mesh) -> tuple[Embedding, float]:
+    start = time.perf_counter()
+    embedding = embed_skeleton(mesh)
+    return embedding, time.perf_counter() - start
+
+
+def sides_right(e: Embedding, joints: dict[str, np.ndarray]) -> bool:
+    """Whether every joint of a pair lies nearer to its own true place than to that of the other side."""
+    found = dict(zip(e.names, e.joints))
+    for name in (n for n in found if n.startswith("left_") and n in joints):
+        other = name.replace("left_", "right_")
+        own = np.linalg.norm(found[name] - joints[name]) + np.linalg.norm(found[other] - joints[other])
+        swapped = np.linalg.norm(found[name] - joints[other]) + np.linalg.norm(found[other] - joints[name])
+        if swapped < own:
+            return False
+    return True
+
+
+def row(name: str, case: Case) -> str:
+    mesh, joints = case
+    e, seconds = seconds_of(mesh)
+    stature = STATURE[name.split()[0]] * (100 if "cm" in name else 1)
+    away = {
+        n: 100 * np.linalg.norm(p - joints[n]) / stature for n, p in zip(e.names, e.joints) if n in joints
+    }
+    worst = max(away, key=lambda n: away[n])
+    cells = [
+        name,
+        f"{np.median(list(away.values())):.1f}",
+        f"{away[worst]:.1f}",
+        worst,
+        "right" if sides_right(e, joints) else "exchanged",
+        f"{e.penalty:.2f}" + (" doubtful" if e.doubtful else ""),
+        e.up,
+        e.report["reading"],
+        f"{seconds:.1f}",
+    ]
+    return "| " + " | ".join(cells) + " |"
+
+
+def doubt_row(name: str, mesh: Mesh) -> str:
+    e, seconds = seconds_of(mesh)
+    reason = e.reasons[0].split(";")[0] if e.reasons else ""
+    answer = "doubtful" if e.doubtful else "human"
+    return f"| {name} | {e.penalty:.2f} | {answer} | {reason} | {seconds:.1f} |"
+
+
+def main() -> None:
+    start = sys.argv[1] if len(sys.argv) > 1 else ""
+    embed_skeleton(CASES["makehuman"]()[0])  # compiles
+    print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS))
+    for name, make in CASES.items():
+        if name.startswith(start):
+            print(row(name, make()), flush=True)
+    if start:
+        return
+    print("\n| mesh | penalty | answer | reason | seconds |\n|---|---|---|---|---|")
+    for t in range(0, 175, 40):
+        print(doubt_row(f"crane {t}", crane(t)), flush=True)
+    for name, mesh in others().items():
+        print(doubt_row(name, mesh), flush=True)
+    mesh = CASES["makehuman"]()[0]
+    e = embed_skeleton(mesh)
+    begin = time.perf_counter()
+    heat_weights(mesh, e)
+    print(f"\nHeat weights, {len(mesh.vertices)} vertices, 21 bones: {time.perf_counter() - begin:.1f} s")
+
+
+if __name__ == "__main__":
+    main()
