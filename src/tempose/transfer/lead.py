@@ -23,7 +23,7 @@ from tempose.typing import FloatArray, IntArray
 LEAD = 0.6
 """Share of the lag that is made up for: the rest would cost more in stretched skin than it gains."""
 LIMB_PARTS = ("upper_arm", "forearm", "thigh", "shin")
-_FRAMES, _ROUNDS, _RIDGE = 24, 2, 1e-2
+_FRAMES, _ROUNDS, _RIDGE = 16, 2, 1e-2
 
 
 @dataclass(frozen=True)
