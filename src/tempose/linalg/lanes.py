@@ -4,7 +4,7 @@ The compiler does not find these by itself in loops that gather rows of a sparse
 make a solve two to three times faster. They work for float32 and float64 and on any processor.
 """
 
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportMissingTypeStubs=false
+# pyright: reportUntypedBaseClass=false, reportUntypedClassDecorator=false, reportCallIssue=false
 from __future__ import annotations
 
 import operator
@@ -12,13 +12,18 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
+from numba import extending
 from numba.core import types
 from numba.core.datamodel import models
-from numba.extending import intrinsic, overload, register_model
 from numba.np.arrayobj import make_array
 
 _INT32 = ir.IntType(32)
 _FAST = ("contract",)
+
+
+def intrinsic(function: Any) -> Callable[..., Any]:
+    """Mark a function that writes machine code; its first argument comes from numba."""
+    return extending.intrinsic(function)
 
 
 class Lanes(types.Type):
@@ -37,7 +42,7 @@ class Lanes(types.Type):
         super().__init__(name=f"Lanes({dtype}, {width})")
 
 
-@register_model(Lanes)
+@extending.register_model(Lanes)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
         element = manager.lookup(fe_type.dtype).get_value_type()
@@ -156,7 +161,7 @@ def _elementwise(python_operator: Callable[..., Any], instruction: str) -> None:
 
         return x(x, y), generate
 
-    @overload(python_operator)
+    @extending.overload(python_operator)
     def choose(x: Any, y: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
         if not (isinstance(x, Lanes) and isinstance(y, Lanes)):
             return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,12 +107,14 @@ class MotionTransfer:
             fabric = weave(mesh)
         V, F, first, order = fabric.V, fabric.F, fabric.first, fabric.order
         self._inverse, self.links = fabric.inverse, fabric.links
-        self.fields = HarmonicFields(
-            fabric.field_matrix, self._inverse[vertices], bones, n_bones, fabric.order
-        )
-        inner = inner_edges(V, F, self._strengths(volume))
-        extra = self.links + fabric.shell + inner
-        self._glue = PoissonGlue(V, F, extra, precision, None if len(inner.pairs) else order)
+        marked = self._inverse[vertices]
+        # neither factor waits for the other
+        with ThreadPoolExecutor(1) as pool:
+            fields = pool.submit(HarmonicFields, fabric.field_matrix, marked, bones, n_bones, order)
+            inner = inner_edges(V, F, _strengths(volume, fields))
+            extra = self.links + fabric.shell + inner
+            self._glue = PoissonGlue(V, F, extra, precision, None if len(inner.pairs) else order)
+            self.fields = fields.result()
         self._rows = self._glue.rows[self._inverse]
         self._rest = mesh.vertices - mesh.vertices[0]
         if self.fields.basis is not None:
@@ -121,11 +124,6 @@ class MotionTransfer:
         self.anchor = anchor or _centroid_anchor(mesh, vertices)
         self.welded = Welded(V, F, first, self._inverse)
         self.fill: VolumeFill | None = None
-
-    def _strengths(self, volume: float | FloatArray) -> float | FloatArray:
-        if np.ndim(volume) == 0 or self.fields.basis is None:
-            return float(np.max(volume))
-        return np.clip(self.fields.basis @ np.asarray(volume), 0, None)
 
     @property
     def basis(self) -> FloatArray | None:
@@ -269,6 +267,13 @@ class MotionTransfer:
         q = np.zeros((n + 1, wide), dtype=self._glue.dtype)
         spread_8(self._basis, frames.reshape(-1), B, wide, q.reshape(-1))
         return q
+
+
+def _strengths(volume: float | FloatArray, fields: Future[HarmonicFields]) -> float | FloatArray:
+    """Strength of the inner edges at every vertex."""
+    if np.ndim(volume) == 0 or not np.any(volume) or fields.result().basis is None:
+        return float(np.max(volume))
+    return np.clip(fields.result().basis @ np.asarray(volume), 0, None)
 
 
 def _common_rotation(Q: FloatArray) -> FloatArray:
