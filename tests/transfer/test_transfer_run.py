@@ -87,11 +87,15 @@ def test_marks_turn_exactly_as_the_bones_of_their_own_skeleton() -> None:
     body, clip = human_body(), walking("a")
     job = prepare_skeleton(clip, body.mesh, pairs_from_skin(body.skeleton, body), lead=0)
     motion = bone_motion(clip, job.bones, {})
-    assert_allclose(angle_between(job.rotations[:, : len(job.bones.names)], motion.turns), 0, rtol=0, atol=1e-7)
+    assert_allclose(
+        angle_between(job.rotations[:, : len(job.bones.names)], motion.turns), 0, rtol=0, atol=1e-7
+    )
     # and so do the bones of a skeleton with other local axes, away from their own rest
     other = rolled(clip, np.random.default_rng(3))
     job = prepare_skeleton(other, body.mesh, pairs_from_skin(other.skeleton, body), lead=0)
-    assert_allclose(angle_between(job.rotations[:, : len(job.bones.names)], motion.turns), 0, rtol=0, atol=1e-6)
+    assert_allclose(
+        angle_between(job.rotations[:, : len(job.bones.names)], motion.turns), 0, rtol=0, atol=1e-6
+    )
 
 
 def test_the_anchor_goes_where_the_hips_go() -> None:
@@ -306,7 +310,9 @@ FACE_PAIRS = Pairs("faces", [0, 5, 9], [0, 5, 9])
         ({"target": Mesh(np.eye(3), [[0, 1, 2]])}, "at least 2 triangles, got 1"),
         ({"target": Mesh(np.eye(3), np.zeros((0, 3), int))}, "at least 2 triangles, got 0"),
         ({"target": one_plane()}, "target must have volume"),
-        ({"target": sphere(1), "pairs": None}, "no skin weights to take pairs from"),
+        ({"embed": True}, "pairs are given; leave one of them out"),
+        ({"source": "other", "pairs": None}, "human's skeleton; of the source's joints"),
+        ({"source": "mesh", "pairs": None, "embed": True}, "embed needs a skeleton as source"),
         ({"pairs": FACE_PAIRS}, "pairs of kind 'faces' need a mesh clip as source, got a skeleton"),
         ({"pairs": Pairs("joints", ("hips", "knee"), [0, 1])}, "names joint 'knee'"),
         ({"pairs": Pairs("joints", ("hips", "head"), [0, 80])}, "target has 80"),
