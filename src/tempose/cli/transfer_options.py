@@ -77,6 +77,9 @@ Singular = Annotated[
         help="Where limbs turn by half a turn: take a frame before as reference, or lay paths over the skin.",
     ),
 ]
+Measure = Annotated[
+    bool, typer.Option("--measure/--no-measure", help="Measure the result; takes longer than making it.")
+]
 Start = Annotated[int, typer.Option(metavar="FRAME", help="First frame of the source, 0-based.")]
 Stop = Annotated[int | None, typer.Option(metavar="FRAME", help="First frame left out.")]
 Step = Annotated[int, typer.Option(metavar="N", help="Use every N-th frame, at the same speed.")]
