@@ -220,7 +220,7 @@ def test_feet_stay_when_the_hips_move() -> None:
             point = part_of(base(), foot)
             gap = point.points(frames(result)) - point.points(frames(base()))
             assert_allclose(gap, 0, rtol=0, atol=1e-6)
-            assert distance(result)[:, owned(foot)].max() < 0.015
+            assert distance(result)[:, ruled(foot, 0.9)].max() < (5e-3 if a.turn else 1e-6)
 
 
 @pytest.mark.parametrize(("side", "out"), [("left", 1.0), ("right", -1.0)])

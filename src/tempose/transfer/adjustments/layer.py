@@ -16,7 +16,12 @@ from tempose.rotations import (
     rotate,
 )
 from tempose.transfer.adjustments.limb_chain import LimbChain
-from tempose.transfer.adjustments.part_fields import residual_field, rigid_vertices, turned_field
+from tempose.transfer.adjustments.part_fields import (
+    carried_field,
+    residual_field,
+    rigid_vertices,
+    turned_field,
+)
 from tempose.transfer.adjustments.parts import Part
 from tempose.transfer.adjustments.posing import job_with, pose_frames
 from tempose.transfer.from_skeleton import Prepared
@@ -149,6 +154,9 @@ class Layer:
         missed = np.zeros(len(self.frames))
         rest = residual_field(self.job, part)
         moved = None if part.chain is None else turned_field(self.job, part.chain.top)
+        carried = None
+        if isinstance(part.chain, LimbChain) and not follow:
+            carried = carried_field(self.job, part.chain.limb)
         for block in self._blocks(active, part.name):
             V = np.asarray(self.frames[block], dtype=np.float64)
             if part.chain is not None and moved is not None:
@@ -156,6 +164,11 @@ class Layer:
                 if swivel is not None and isinstance(part.chain, LimbChain):
                     Q = part.chain.swivelled(Q, swivel[block])
                 V = self._reach(part, V, block, Q, wanted[block], follow, moved)
+            if carried is not None:
+                # the glue tilts a foot by some millimetres with its shin: it is to be moved, not turned
+                entry = self.frames[block]
+                whole = entry + (part.points(V) - part.points(entry))[:, None]
+                V += carried[:, None] * (whole - V)
             left = wanted[block] - part.points(V)
             V += rest[:, None] * self._stretch(part, left)[:, None]
             missed[block] = np.linalg.norm(wanted[block] - part.points(V), axis=1)

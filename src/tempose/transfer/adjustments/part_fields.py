@@ -11,13 +11,14 @@ from tempose.transfer.adjustments.parts import Part, bone_basis
 from tempose.transfer.bones import split_role
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.limb_field import limb_field
-from tempose.transfer.limb_ik import bones_below
+from tempose.transfer.limb_ik import Limb, bones_below
 from tempose.transfer.marks import RIGID_PARTS
 from tempose.typing import FloatArray, IntArray
 
 _UNFELT, _FELT = 0.05, 0.5
 """Share of a limb in a vertex below which it does not move with it, and from which it does so wholly."""
 _ONE_LIMB, _RIGID = 0.7, 0.99
+_HALF, _CARRIED = 0.5, 0.9
 _SCULPTED = 0.12
 """Share of the diagonal over which a displacement fades where no bone can make it."""
 
@@ -41,6 +42,26 @@ def turned_field(job: Prepared, top: int) -> FloatArray:
     assert job.bones is not None
     share = bone_basis(job)[:, bones_below(job.bones.parents, top)].sum(axis=1)
     s = np.clip((share - _UNFELT) / (_FELT - _UNFELT), 0.0, 1.0)
+    return s * s * (3 - 2 * s)
+
+
+def carried_field(job: Prepared, limb: Limb) -> FloatArray:
+    """Weight of what a limb carries without turning it.
+
+    Parameters
+    ----------
+    job : Prepared
+        A transfer with bones.
+    limb : Limb
+        A limb of it.
+
+    Returns
+    -------
+    (n,) ndarray
+        1 on the hand or foot, 0 on the rest.
+    """
+    share = bone_basis(job)[:, limb.carried].sum(axis=1)
+    s = np.clip((share - _HALF) / (_CARRIED - _HALF), 0.0, 1.0)
     return s * s * (3 - 2 * s)
 
 

@@ -13,12 +13,15 @@ from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.adjustments.chains import LimbChain, TurnChain, find_chain
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.joint_regressor import apply_regressor, regress_points
+from tempose.transfer.limb_ik import bones_below
 from tempose.typing import FloatArray, IntArray
 
 ROOT = "root"
 """Name of the whole body."""
 HIPS = "hips"
 """The pelvis: it moves as the whole body does, but the feet stay."""
+
+_SURE, _FEW = 0.9, 12
 
 
 @dataclass(frozen=True)
@@ -89,11 +92,19 @@ def find_part(job: Prepared, part: str | Sequence[int] | IntArray) -> Part:
             f"'root' or a list of vertices"
         )
     bone = _find_bone(job, part)
-    mine = np.flatnonzero(job.owner == bone)
-    mine = mine if len(mine) else np.arange(len(job.owner))
-    index, weights = regress_points(rest, job.target.starts[[bone]], [mine])
+    index, weights = regress_points(rest, job.target.starts[[bone]], [_own_vertices(job, bone)])
     chain = find_chain(job.bones, job.target, bone, None, job.rotations[:, : len(job.bones.names)])
     return Part(job.bones.roles[bone] or job.bones.names[bone], bone, index[0], weights[0], chain)
+
+
+def _own_vertices(job: Prepared, bone: int) -> IntArray:
+    """Vertices that tell where a bone is: those it moves without the bones above, if there are enough."""
+    assert job.bones is not None
+    mine = np.flatnonzero(job.owner == bone)
+    share = bone_basis(job)[mine][:, bones_below(job.bones.parents, bone)].sum(axis=1)
+    sure = mine[share > _SURE]
+    mine = sure if len(sure) >= _FEW else mine
+    return mine if len(mine) else np.arange(len(job.owner))
 
 
 def _find_bone(job: Prepared, part: str) -> int:
