@@ -276,3 +276,13 @@ def test_wrong_adjustments(run: Run, job: Path, entry: Any, said: str) -> None:
     ran = run(*WORDS, "--adjust", "changes.json")
     assert ran.code == 2 and said in ran.err.splitlines()[-1]
     assert not Path("out.npz").exists()
+
+
+def test_measures_can_be_left_out(run: Run, job: Path) -> None:
+    assert run(*WORDS).code == 0
+    measured = Path("out.npz").read_bytes()
+    ran = run(*WORDS, "--no-measure", "--json")
+    assert ran.code == 0 and Path("out.npz").read_bytes() == measured
+    report = json.loads(ran.out)
+    assert "edge_ratio" not in report and "measures" not in report["seconds"]
+    assert run(*WORDS, "--no-measure").code == 0

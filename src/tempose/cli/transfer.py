@@ -46,6 +46,7 @@ def transfer(  # numpydoc ignore=PR01
     target_unit: given.TargetUnit = None,
     report: given.ReportFile = None,
     save_pairs: given.SavePairs = None,
+    measure: given.Measure = True,
     json: Json = False,
 ) -> None:
     """Move a still mesh as a motion-capture clip, or another mesh, moves."""
@@ -60,7 +61,7 @@ def transfer(  # numpydoc ignore=PR01
     goal = load_target(target, pairs, group, up=target_up, unit=target_unit)
     settings: dict[str, Any] = {"mapping": load_mapping(mapping), "volume": volume}
     settings |= {"contacts": load_contacts(contact_frames, contacts), "ground": parse_ground(ground)}
-    settings |= {"embed": embed, "twist": twist, "lead": lead, "singular": singular}
+    settings |= {"embed": embed, "twist": twist, "lead": lead, "singular": singular, "measure": measure}
     if adjust is not None:
         settings["adjustments"] = tempose.transfer.load_adjustments(adjust)
     settings |= load_rest(source_rest, motion)

@@ -15,7 +15,7 @@ from tempose.typing import FloatArray
 
 LEG_WARNING_DEG = 40.0
 _JUMP_DEG = 20.0
-_MANY_BONES, _UNUSUAL = 8, 2.5
+_MANY_BONES, _UNUSUAL = 8, 2.0
 
 
 @dataclass(frozen=True)

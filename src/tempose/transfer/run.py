@@ -100,7 +100,7 @@ def transfer_motion(
         Height of a plane on which feet stand and into which nothing sinks, metres; without it feet stand at
         the height of the target's lowest vertex, and only feet are kept from sinking.
     measure : bool, default True
-        Whether the report holds measures; they cost about as much as the frames.
+        Whether the report holds measures; they cost several times as much as the frames.
     adjustments : sequence of Adjustment, optional
         Key-framed changes layered on the result (`adjust`), which then keeps the frames without them too.
     scratch : path-like, optional
