@@ -57,15 +57,19 @@ def _eikonal(a: float, b: float, c: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def march(index: IntArray, neighbours: IntArray, seeds: IntArray, start: FloatArray) -> FloatArray:
+def _lower(D: FloatArray, before: int, after: int) -> float:
+    low = D[before] if before >= 0 else np.inf
+    return min(low, D[after]) if after >= 0 else low
+
+
+@njit(cache=True, nogil=True)
+def march(neighbours: IntArray, seeds: IntArray, start: FloatArray) -> FloatArray:
     """Distance from seeds through a set of cells.
 
     Parameters
     ----------
-    index : (N,) int
-        Only its length counts: N cells.
     neighbours : (N, 6) int
-        Neighbours along -x, +x, -y, +y, -z, +z; -1 where there is none.
+        Of N cells, those along -x, +x, -y, +y, -z, +z; -1 where there is none.
     seeds : (s,) int
         Cells at which the distance is known.
     start : (s,) float
@@ -76,7 +80,7 @@ def march(index: IntArray, neighbours: IntArray, seeds: IntArray, start: FloatAr
     (N,) ndarray
         Distance in cells; infinite where no way leads.
     """
-    N = len(index)
+    N = len(neighbours)
     D = np.full(N, np.inf)
     done = np.zeros(N, dtype=np.bool_)
     capacity = 6 * N + len(seeds) + 1
@@ -100,12 +104,11 @@ def march(index: IntArray, neighbours: IntArray, seeds: IntArray, start: FloatAr
             other = neighbours[cell, d]
             if other < 0 or done[other]:
                 continue
-            least = np.full(3, np.inf)
-            for e in range(6):
-                beside = neighbours[other, e]
-                if beside >= 0 and D[beside] < least[e >> 1]:
-                    least[e >> 1] = D[beside]
-            t = _eikonal(least[0], least[1], least[2])
+            t = _eikonal(
+                _lower(D, neighbours[other, 0], neighbours[other, 1]),
+                _lower(D, neighbours[other, 2], neighbours[other, 3]),
+                _lower(D, neighbours[other, 4], neighbours[other, 5]),
+            )
             if t < D[other]:
                 D[other] = t
                 keys[size], cells[size] = t, other

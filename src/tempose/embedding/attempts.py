@@ -9,12 +9,13 @@ from tempose.embedding.cells import Cells, make_cells
 from tempose.embedding.doubt import whole_penalty
 from tempose.embedding.extremities import find_extremities
 from tempose.embedding.limbs import Limbs, cut_limbs
-from tempose.embedding.pinch import pinch_walls
+from tempose.embedding.pinch import pinch_walls, sphere_regions
 from tempose.embedding.search import Ends, choose_ends
 from tempose.embedding.solid import Solid
 from tempose.embedding.spheres import pack_spheres
 
 _GOOD = 0.8
+_HOPELESS = 3
 _NECKS, _CUT = (0.5, 0.75), 1.25
 
 
@@ -57,7 +58,7 @@ def read_body(solid: Solid) -> Attempt:
         attempt = _attempt(cells, reading)
         if best is None or attempt.penalty < best.penalty:
             best = attempt
-        if best.penalty < _GOOD:
+        if best.penalty < _GOOD or (reading == "volume" and best.n_ends < _HOPELESS):
             break
     assert best is not None
     return best
@@ -71,8 +72,9 @@ def _readings(solid: Solid) -> Iterator[tuple[Cells, str]]:
     assert joined is not None
     yield joined, "volume"
     spheres = pack_spheres(joined)
+    owner = sphere_regions(joined, spheres)
     for narrow in _NECKS:
-        cut = make_cells(solid, pinch_walls(joined, spheres, narrow))
+        cut = make_cells(solid, pinch_walls(joined, spheres, owner, narrow))
         if cut is not None:
             yield cut, "necks"
 

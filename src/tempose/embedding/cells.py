@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from tempose.embedding._marching import march
 from tempose.embedding.solid import Solid
@@ -99,21 +98,6 @@ class Cells:
         """(N, 6) int32, neighbours along -x, +x, -y, +y, -z, +z; -1 where there is none."""
         return _neighbours(self.number, self.grid, self.walls)
 
-    def nearest(self, points: FloatArray) -> IntArray:
-        """Inner cell nearest to each point.
-
-        Parameters
-        ----------
-        points : (k, 3) float
-            Positions.
-
-        Returns
-        -------
-        (k,) ndarray of int
-            Places in the list.
-        """
-        return np.asarray(KDTree(self.points).query(points)[1])
-
     def distances(self, cell: int) -> FloatArray:
         """Distance from one cell through the inside.
 
@@ -131,7 +115,7 @@ class Cells:
         # near the seed the front is curved: start with the true distances of what is joined to it there
         near = np.flatnonzero(away <= _SEED_CELLS)
         near = near[self._joined(near, cell)]
-        D = march(self.grid[:, 0], self.neighbours, near, away[near])
+        D = march(self.neighbours, near, away[near])
         return D * self.solid.spacing
 
     def _joined(self, near: IntArray, cell: int) -> BoolArray:

@@ -6,21 +6,23 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from tempose.embedding.cells import Cells
-from tempose.embedding.spheres import SphereGraph
+from tempose.embedding.spheres import Spheres
 from tempose.typing import BoolArray, IntArray
 
 _NEAREST = 12
 
 
-def pinch_walls(cells: Cells, spheres: SphereGraph, narrow: float) -> BoolArray:
+def pinch_walls(cells: Cells, spheres: Spheres, owner: IntArray, narrow: float) -> BoolArray:
     """Wall off regions that meet in a neck narrower than both of them.
 
     Parameters
     ----------
     cells : Cells
         The inside of a mesh, without walls.
-    spheres : SphereGraph
+    spheres : Spheres
         Spheres packed into it.
+    owner : (N,) int
+        Sphere to which each cell belongs.
     narrow : float
         Largest share of the smaller sphere's radius that counts as a neck.
 
@@ -29,7 +31,6 @@ def pinch_walls(cells: Cells, spheres: SphereGraph, narrow: float) -> BoolArray:
     (3, X, Y, Z) ndarray of bool
         Walls between a cell and the next along each axis.
     """
-    owner = sphere_regions(cells, spheres)
     S = len(spheres.radii)
     number, grid = cells.number, cells.grid
     steps = np.eye(3, dtype=int)
@@ -52,14 +53,14 @@ def pinch_walls(cells: Cells, spheres: SphereGraph, narrow: float) -> BoolArray:
     return walls
 
 
-def sphere_regions(cells: Cells, spheres: SphereGraph) -> IntArray:
+def sphere_regions(cells: Cells, spheres: Spheres) -> IntArray:
     """Sphere to which each cell belongs.
 
     Parameters
     ----------
     cells : Cells
         N cells.
-    spheres : SphereGraph
+    spheres : Spheres
         Packed spheres.
 
     Returns

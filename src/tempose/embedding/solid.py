@@ -14,7 +14,7 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 
 CELLS = 160
 """Cells along the longest extent."""
-_MOST_CELLS = 250_000
+_MOST_CELLS = 150_000
 _MARGIN = 5
 # an offset that no vertex of a modelled mesh hits, so that no line passes through an edge
 _SHIFT = np.array([0.4142135, 0.3178372, 0.2360679])
@@ -130,7 +130,7 @@ def make_solid(V: FloatArray, F: IntArray, cells: int = CELLS) -> Solid:
     F : (m, 3) int
         Faces.
     cells : int, default 160
-        Cells along the longest extent; fewer where more than 250 000 would lie inside.
+        Cells along the longest extent; fewer where more than 150 000 would lie inside.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Spheres packed along the medial surface, and the graph of those that touch."""
+"""Spheres packed along the medial surface."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from scipy import ndimage
-from scipy.spatial import KDTree
 
 from tempose.embedding.cells import Cells
 from tempose.typing import BoolArray, FloatArray, IntArray
@@ -17,8 +16,8 @@ _LEAST = 1.5
 
 
 @dataclass(frozen=True)
-class SphereGraph:
-    """S inner spheres, joined where they overlap."""
+class Spheres:
+    """S spheres inside a body."""
 
     cells: IntArray
     """(S,) cell at each centre, largest sphere first."""
@@ -26,8 +25,6 @@ class SphereGraph:
     """(S, 3) positions."""
     radii: FloatArray
     """(S,) distance of the centre to the surface."""
-    edges: IntArray
-    """(E, 2) spheres that overlap."""
 
 
 def medial_cells(cells: Cells) -> IntArray:
@@ -54,7 +51,7 @@ def medial_cells(cells: Cells) -> IntArray:
     return np.flatnonzero(ridge[tuple(cells.grid.T)])
 
 
-def pack_spheres(cells: Cells) -> SphereGraph:
+def pack_spheres(cells: Cells) -> Spheres:
     """Cover the medial surface with spheres, the largest first, none centred in one before it.
 
     Parameters
@@ -64,16 +61,15 @@ def pack_spheres(cells: Cells) -> SphereGraph:
 
     Returns
     -------
-    SphereGraph
-        Spheres and which of them overlap by a way inside.
+    Spheres
+        Largest first.
     """
     medial = medial_cells(cells)
     radii = cells.depth[medial] + 0.5 * cells.solid.spacing
     order = np.argsort(-radii, kind="stable")
     points = cells.points[medial[order]]
     kept = order[_pack(points, radii[order])]
-    chosen, radii = medial[kept], radii[kept]
-    return SphereGraph(chosen, cells.points[chosen], radii, _touching(cells, cells.points[chosen], radii))
+    return Spheres(medial[kept], cells.points[medial[kept]], radii[kept])
 
 
 @njit(cache=True, nogil=True)
@@ -94,17 +90,3 @@ def _pack(points: FloatArray, radii: FloatArray) -> BoolArray:
             list_[n] = i
             n += 1
     return kept
-
-
-def _touching(cells: Cells, centres: FloatArray, radii: FloatArray) -> IntArray:
-    spacing = cells.solid.spacing
-    tree = KDTree(centres)
-    pairs = tree.query_pairs(2 * radii.max() + spacing, output_type="ndarray")
-    a, b = pairs.T
-    near = np.linalg.norm(centres[a] - centres[b], axis=1) <= radii[a] + radii[b] + spacing
-    pairs = pairs[near]
-    share = np.linspace(0.0, 1.0, 9)[1:-1, None, None]
-    line = (1 - share) * centres[pairs[:, 0]] + share * centres[pairs[:, 1]]
-    where = np.moveaxis((line - cells.solid.origin) / spacing, -1, 0)
-    inside = ndimage.map_coordinates(cells.solid.inside.astype(np.float32), where, order=1)
-    return pairs[(inside > 0.4).all(axis=0)]
