@@ -14,7 +14,7 @@ from tempose.embedding.search import Ends, choose_ends
 from tempose.embedding.solid import Solid
 from tempose.embedding.spheres import pack_spheres
 
-_GOOD = 0.8
+_GOOD = 0.85
 _HOPELESS = 3
 _NECKS, _CUT = (0.5, 0.75), 1.25
 

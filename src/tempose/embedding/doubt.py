@@ -10,7 +10,7 @@ from tempose.typing import FloatArray
 
 _CROTCH, _CROTCH_SPREAD = 0.515, 0.035
 _PIT, _PIT_SPREAD = 0.265, 0.045
-DOUBTFUL = 1.5
+DOUBTFUL = 1.45
 """Root mean square of the penalty terms, in standard deviations, from which a body is no longer human."""
 _PITS_ALIKE = 0.025
 _CLEAR, _RATIO = 0.15, 1.45
