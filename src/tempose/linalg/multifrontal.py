@@ -67,7 +67,8 @@ def factor_fronts(
         w, m = end - begin, start[s + 1] - start[s]
         mine = rows[start[s] : start[s + 1]]
         F = work[: (w + m) * (w + m)].reshape(w + m, w + m)
-        F[:] = 0.0
+        for p in range((w + m) * (w + m)):
+            work[p] = 0.0
         for j in range(w):
             local[begin + j] = j
         for r in range(m):
@@ -91,7 +92,9 @@ def factor_fronts(
         _store(F, out[place[s] : place[s] + w * w].reshape(w, w), out[panel : panel + m * w].reshape(m, w))
         if m > 0:
             waiting[s] = top
-            stack[top : top + m * m].reshape(m, m)[:] = F[w:, w:]
+            for a in range(m):
+                for b in range(a, m):
+                    stack[top + a * m + b] = F[w + a, w + b]
             top += m * m
             t = above[s]
             following[s], head[t] = head[t], s

@@ -83,9 +83,11 @@ def _push_components(
         if region[order[p]] == label:
             begin = tail
             tail = _levels(indptr, indices, region, order[p], queue, tail, f)
-            region[queue[begin:tail]] = 0
+            for t in range(begin, tail):
+                region[queue[t]] = 0
             stack.append((lo + begin, lo + tail))
-    order[lo:hi] = queue[: hi - lo]
+    for p in range(lo, hi):
+        order[p] = queue[p - lo]
 
 
 @numba.njit(cache=True, nogil=True)
@@ -122,24 +124,39 @@ def _cut(indptr: Any, indices: Any, region: Any, order: Any, queue: Any, count: 
     values = np.zeros(size)
     for p in range(size):
         values[p] = f[order[p]]
-    order[:] = order[np.argsort(values)]
+    rank = np.argsort(values)
+    for p in range(size):
+        queue[p] = order[rank[p]]
+    for p in range(size):
+        order[p] = queue[p]
     split = _fewest(indptr, indices, region, order, count)
-    region[order[:split]] = -label
+    for p in range(split):
+        region[order[p]] = -label
     # the separator is what of the first side touches the second
     side = np.zeros(size, dtype=np.int8)
-    side[split:] = 1
+    for p in range(size):
+        side[p] = 1 if p >= split else 0
     for p in range(split):
         if _touches(indptr, indices, region, order[p], label):
             side[p] = 2
-    region[order[side == 2]] = 0
+    for p in range(split):
+        if side[p] == 2:
+            region[order[p]] = 0
     for p in range(split):
         if side[p] == 2 and not _touches(indptr, indices, region, order[p], -label):
             side[p] = 1
             region[order[p]] = label
-    first, second, middle = order[side == 0], order[side == 1], order[side == 2]
-    a, b = len(first), len(first) + len(second)
-    order[:a], order[a:b], order[b:] = first, second, middle
-    return a, b
+    ends = np.zeros(3, dtype=np.int64)
+    at = 0
+    for kind in range(3):
+        for p in range(size):
+            if side[p] == kind:
+                queue[at] = order[p]
+                at += 1
+        ends[kind] = at
+    for p in range(size):
+        order[p] = queue[p]
+    return ends[0], ends[1]
 
 
 @numba.njit(cache=True, nogil=True)
@@ -170,7 +187,8 @@ def _end_to_end(indptr: Any, indices: Any, region: Any, order: Any, queue: Any, 
                     total += f[u]
                     k += 1
             f[v] += RELAXATION * (total / k - f[v])
-        order[:] = order[::-1].copy()
+        for p in range(size // 2):
+            order[p], order[size - 1 - p] = order[size - 1 - p], order[p]
 
 
 @numba.njit(cache=True, nogil=True)
