@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
+from real_bodies import DATA, person
 from tempose.clips import Mesh, SkeletonClip, SkinnedMesh
 from tempose.formats import load_mesh, load_skeleton_clip, load_skin
 from tempose.kinematics import forward_kinematics, rest_transforms
@@ -16,8 +15,6 @@ from tempose.kinematics.bone_axes import bone_axis
 from tempose.kinematics.roles import find_roles
 from tempose.rotations import conjugate, from_matrix, multiply, rotate, shortest_rotation, to_matrix
 
-ROOT = Path(__file__).resolve().parents[1]
-DATA = Path(os.environ.get("TEMPOSE_DATA") or ROOT.parent / "shared" / "data")
 SIDES = ("left", "right")
 LIMBS = tuple(f"{s}_{p}" for s in SIDES for p in ("upper_arm", "forearm", "hand", "thigh", "shin", "foot"))
 
@@ -26,14 +23,9 @@ Case = tuple[Mesh, dict[str, np.ndarray]]
 
 @cache
 def skin(name: str) -> SkinnedMesh:
-    if name == "makehuman":
-        folder = DATA / "makehuman-base"
-        return load_skin(folder / "default_weights.mhw", mesh=load_mesh(folder / "base.obj", group="body"))
-    if name == "sample":
-        from tempose.samples import human_character
-
-        return human_character(20000).skin
-    return load_skin(DATA / "rigged-gltf" / {"male": "human-male.glb", "cesium": "CesiumMan.glb"}[name])
+    if name != "cesium":
+        return person({"male": "human-male", "sample": "sample-human"}.get(name, name))
+    return load_skin(DATA / "rigged-gltf" / "CesiumMan.glb")
 
 
 @cache

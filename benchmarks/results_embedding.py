@@ -1,7 +1,7 @@
-"""Embedded joints against true ones, humans against animals: tables in markdown.
+"""Embedded joints against true ones, humans against animals.
 
-    python benchmarks/results_embedding.py            both tables
-    python benchmarks/results_embedding.py makehuman  cases whose name begins so
+python benchmarks/results_embedding.py            both tables of docs/results.md
+python benchmarks/results_embedding.py makehuman  cases whose name begins so, printed
 
 Real bodies are found through TEMPOSE_DATA, else beside the checkout.
 """
@@ -14,8 +14,9 @@ import time
 import numpy as np
 
 from embedding_bodies import CASES, Case, crane, others
+from results_page import line, table, write_block
 from tempose.clips import Mesh
-from tempose.embedding import Embedding, embed_skeleton, heat_weights
+from tempose.embedding import Embedding, embed_skeleton
 
 STATURE = {"makehuman": 1.666, "male": 1.830, "sample": 1.750, "cesium": 1.507}
 COLUMNS = ("body", "median %", "worst %", "worst joint", "sides", "penalty", "up", "reading", "seconds")
@@ -58,35 +59,33 @@ def row(name: str, case: Case) -> str:
         e.report["reading"],
         f"{seconds:.1f}",
     ]
-    return "| " + " | ".join(cells) + " |"
+    return line(*cells)
 
 
 def doubt_row(name: str, mesh: Mesh) -> str:
     e, seconds = seconds_of(mesh)
     reason = e.reasons[0].split(";")[0] if e.reasons else ""
     answer = "doubtful" if e.doubtful else "human"
-    return f"| {name} | {e.penalty:.2f} | {answer} | {reason} | {seconds:.1f} |"
+    return line(name, f"{e.penalty:.2f}", answer, reason, f"{seconds:.1f}")
 
 
 def main() -> None:
     start = sys.argv[1] if len(sys.argv) > 1 else ""
     embed_skeleton(CASES["makehuman"]()[0])  # compiles
-    print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS))
+    rows: list[str] = []
     for name, make in CASES.items():
         if name.startswith(start):
-            print(row(name, make()), flush=True)
+            rows.append(row(name, make()))
+            print(rows[-1], flush=True)
     if start:
         return
-    print("\n| mesh | penalty | answer | reason | seconds |\n|---|---|---|---|---|")
-    for t in range(0, 175, 40):
-        print(doubt_row(f"crane {t}", crane(t)), flush=True)
-    for name, mesh in others().items():
-        print(doubt_row(name, mesh), flush=True)
-    mesh = CASES["makehuman"]()[0]
-    e = embed_skeleton(mesh)
-    begin = time.perf_counter()
-    heat_weights(mesh, e)
-    print(f"\nHeat weights, {len(mesh.vertices)} vertices, 21 bones: {time.perf_counter() - begin:.1f} s")
+    doubts: list[str] = []
+    meshes = {f"crane {t}": crane(t) for t in range(0, 175, 40)} | others()
+    for name, mesh in meshes.items():
+        doubts.append(doubt_row(name, mesh))
+        print(doubts[-1], flush=True)
+    write_block("embedding", table(COLUMNS, rows))
+    write_block("doubt", table(("mesh", "penalty", "answer", "reason", "seconds"), doubts))
 
 
 if __name__ == "__main__":
