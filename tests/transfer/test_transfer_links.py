@@ -266,3 +266,8 @@ def test_edges_add_up() -> None:
     both = a + b + ExtraEdges.none()
     assert_array_equal(both.pairs, [[0, 1], [1, 2]])
     assert_array_equal(both.weights, [1, 2])
+
+
+def test_a_finger_is_thin_but_not_tied() -> None:
+    finger = tube(60, 16, 1.0, 0.45 * SHELL)
+    assert len(shell_edges(finger.vertices, finger.faces).pairs) == 0

@@ -16,6 +16,7 @@ from tempose.typing import BoolArray, FloatArray, IntArray
 LINK_WEIGHT = 5.0
 LINK_RADIUS = 0.003
 SHELL = 0.01
+_LOOKS = 8
 _MOST_LINKS = 40
 _NO_HOLD = 1e-9
 _FIRST_STEP, _GROWTH, _NEAR = 0.003, 1.2, 6
@@ -173,15 +174,37 @@ def shell_edges(V: FloatArray, F: IntArray) -> ExtraEdges:
     Returns
     -------
     ExtraEdges
-        Between vertices that face each other through less than 1 % of the diagonal, weighted as links.
+        Between vertices that face each other through less than 1 % of the diagonal, weighted as links;
+        none through fingers and toes, which are thin but not broad.
     """
     if len(F) == 0:
         return ExtraEdges.none()
     radius = SHELL * float(np.linalg.norm(np.ptp(V, axis=0)))
-    partner = facing_through(V, vertex_normals(V, F), radius)
+    normals = vertex_normals(V, F)
+    partner = facing_through(V, normals, radius)
     i = np.flatnonzero(partner >= 0)
+    thickness = np.linalg.norm(V[i] - V[partner[i]], axis=1)
+    # where vertices lie further apart than the sides do, the next one must be looked at
+    reach = np.maximum(2.5 * thickness, 1.5 * np.sqrt(vertex_areas(V, F)[i]))
+    i = i[_is_broad(V, normals, i, reach)]
     pairs = np.unique(np.sort(np.column_stack([i, partner[i]]), axis=1), axis=0).reshape(-1, 2)
     return ExtraEdges(pairs, np.full(len(pairs), LINK_WEIGHT))
+
+
+def _is_broad(V: FloatArray, normals: FloatArray, i: IntArray, reach: FloatArray) -> BoolArray:
+    """Tell sheets from fingers: whether the surface goes on all round as far as `reach`."""
+    first = np.cross(normals[i], np.eye(3)[np.abs(normals[i]).argmin(axis=1)])
+    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-30)
+    second = np.cross(normals[i], first)
+    tree, on = KDTree(V), np.zeros(len(i), dtype=np.int64)
+    for angle in np.arange(_LOOKS) * (2 * np.pi / _LOOKS):
+        way = np.cos(angle) * first + np.sin(angle) * second
+        there = V[i] + reach[:, None] * way
+        near = np.asarray(tree.query(there)[1], dtype=np.int64)
+        along = np.einsum("sk,sk->s", V[near] - V[i], way)
+        alike = np.einsum("sk,sk->s", normals[near], normals[i]) > 0.6
+        on += alike & (along > 0.5 * reach)
+    return on >= _LOOKS - 1
 
 
 def _opposite_vertices(V: FloatArray, normals: FloatArray) -> IntArray:
