@@ -16,7 +16,7 @@ from tempose.formats import load_clip
 from tempose.metrics import compare
 from tempose.rotations import multiply, rotate
 from tempose.transfer import MotionTransfer, Pairs, TransferResult, load_pairs, transfer_motion
-from tempose.transfer.facing import yaw
+from tempose.transfer.bodies.facing import yaw
 
 
 def horse_itself(every_face: bool) -> TransferResult:

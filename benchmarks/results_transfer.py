@@ -108,7 +108,7 @@ def sheet(name: str, result: TransferResult) -> None:
 def gap_change(result: TransferResult) -> float:
     """Largest change of the gap between linked pieces, percent of D."""
     from tempose.geometry import weld
-    from tempose.transfer.links import link_pieces
+    from tempose.transfer.solver.links import link_pieces
 
     mesh = result.clip.mesh
     first, inverse = weld(mesh.vertices)

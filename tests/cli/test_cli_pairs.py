@@ -17,7 +17,7 @@ import tempose
 from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.samples.skeletons import human_skeleton
 from tempose.transfer import mark_colors
-from tempose.transfer.found_pairs import Found
+from tempose.transfer.pairing.found_pairs import Found
 
 Run = Callable[..., Any]
 
@@ -140,7 +140,7 @@ def test_a_source_without_a_body_is_refused(run: Run, job: Path) -> None:
 
 
 def test_doubt_is_told(run: Run, job: Path, monkeypatch: pytest.MonkeyPatch, body: SkinnedMesh) -> None:
-    from tempose.transfer import matching
+    from tempose.transfer.pairing import matching
 
     facts = {
         "embedding": {"penalty": 1.3, "confidence": 0.37, "doubtful": True, "reasons": ["x"], "up": "+y"}

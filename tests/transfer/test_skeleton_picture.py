@@ -9,7 +9,7 @@ from tempose.clips import SkeletonClip
 from tempose.kinematics import forward_kinematics
 from tempose.rotations import from_rotation_vector, to_matrix
 from tempose.samples.skeletons import human_skeleton
-from tempose.transfer.skeleton_picture import skeleton_mesh
+from tempose.transfer.turns.skeleton_picture import skeleton_mesh
 
 
 def test_each_bone_is_rigid_on_its_joint(rng: np.random.Generator) -> None:

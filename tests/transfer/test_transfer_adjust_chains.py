@@ -12,10 +12,10 @@ from transfer_zoo import tube, wxyz
 from tempose.kinematics import rest_transforms
 from tempose.rotations import IDENTITY, angle_between, conjugate, multiply, rotate
 from tempose.transfer.adjustments.chains import LimbChain, TurnChain, find_chain
-from tempose.transfer.bones import Bones
-from tempose.transfer.limb_field import limb_field
-from tempose.transfer.motion_transfer import MotionTransfer
-from tempose.transfer.pose import BonePose
+from tempose.transfer.bodies.bones import Bones
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.solver.limb_field import limb_field
+from tempose.transfer.solver.motion_transfer import MotionTransfer
 
 SKELETON = human_body().skeleton
 BONES = Bones(

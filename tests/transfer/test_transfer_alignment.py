@@ -15,11 +15,11 @@ from tempose.clips import Skeleton, SkeletonClip
 from tempose.kinematics.roles import find_roles
 from tempose.rotations import angle_between, conjugate, multiply, rotate
 from tempose.samples.skeletons import human_skeleton
-from tempose.transfer.alignment import align_reference, limb_angles, stands_upright
-from tempose.transfer.bones import Bones, make_bones
-from tempose.transfer.facing import UP, heading, yaw
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import bone_motion, bone_rest
+from tempose.transfer.bodies.bones import Bones, make_bones
+from tempose.transfer.bodies.facing import UP, heading, yaw
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.turns.alignment import align_reference, limb_angles, stands_upright
+from tempose.transfer.turns.reference import bone_motion, bone_rest
 
 LIMBS = [s + p for s in ("left_", "right_") for p in ("upper_arm", "forearm", "hand", "thigh", "shin")]
 FEET = [s + p for s in ("left_", "right_") for p in ("foot", "toes")]

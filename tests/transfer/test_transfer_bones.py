@@ -13,9 +13,9 @@ from tempose.clips import Skeleton
 from tempose.kinematics.roles import find_roles
 from tempose.rotations import rotate
 from tempose.samples.skeletons import human_skeleton
-from tempose.transfer.bones import bone_spans, make_bones, split_role
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import bone_motion, bone_rest
+from tempose.transfer.bodies.bones import bone_spans, make_bones, split_role
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.turns.reference import bone_motion, bone_rest
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,9 @@ from tempose.rotations import (
     shortest_rotation,
 )
 from tempose.transfer import consistent_signs, pairs_from_skin
-from tempose.transfer.columns import Between, Columns
 from tempose.transfer.from_skeleton import prepare_skeleton
-from tempose.transfer.twist import continuous_vectors, twist_angles
+from tempose.transfer.turns.columns import Between, Columns
+from tempose.transfer.turns.twist import continuous_vectors, twist_angles
 
 AXIS = np.array([0.6, 0.0, 0.8])
 ROUNDS = np.radians(np.linspace(-100, 900, 301))

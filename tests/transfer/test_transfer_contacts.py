@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from tempose.metrics import detect_contacts
-from tempose.transfer.contacts import given_contacts, intervals, steady_contacts
+from tempose.transfer.feet.contacts import given_contacts, intervals, steady_contacts
 
 FPS, HEIGHT = 60.0, 1.7
 NAMES = ("left_foot", "right_foot")

@@ -18,12 +18,12 @@ from tempose.kinematics import rest_transforms
 from tempose.samples.walk import walk
 from tempose.transfer import (
     TransferResult,
-    embedded_pairs,
     load_pairs,
     save_pairs,
     transfer_motion,
 )
-from tempose.transfer.dressed import embed_dressed
+from tempose.transfer.pairing import embedded_pairs
+from tempose.transfer.pairing.dressed import embed_dressed
 
 
 @lru_cache

@@ -11,9 +11,9 @@ from transfer_zoo import as_rotation
 from tempose.kinematics.roles import find_roles
 from tempose.rotations import angle_between, rotate
 from tempose.samples.skeletons import human_skeleton
-from tempose.transfer.bones import make_bones
-from tempose.transfer.facing import heading, lateral, yaw, yaw_between
-from tempose.transfer.reference import bone_rest
+from tempose.transfer.bodies.bones import make_bones
+from tempose.transfer.bodies.facing import heading, lateral, yaw, yaw_between
+from tempose.transfer.turns.reference import bone_rest
 
 SKELETON = human_skeleton()
 ROLES = find_roles(SKELETON)

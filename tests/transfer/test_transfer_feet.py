@@ -12,11 +12,11 @@ from tempose.kinematics.roles import find_roles
 from tempose.metrics import detect_contacts
 from tempose.samples.skeletons import animal_skeleton, human_skeleton
 from tempose.samples.walk import walk
-from tempose.transfer.bones import Bones, make_bones
-from tempose.transfer.feet import bone_feet, flat_stance
-from tempose.transfer.mesh_feet import mesh_feet
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import bone_motion, bone_rest
+from tempose.transfer.bodies.bones import Bones, make_bones
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.feet.feet import bone_feet, flat_stance
+from tempose.transfer.feet.mesh_feet import mesh_feet
+from tempose.transfer.turns.reference import bone_motion, bone_rest
 
 
 def bones_and_motion(

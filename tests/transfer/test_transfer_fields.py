@@ -8,8 +8,8 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.geometry import edge_laplacian
-from tempose.transfer import fields
-from tempose.transfer.fields import HarmonicFields
+from tempose.transfer.solver import fields
+from tempose.transfer.solver.fields import HarmonicFields
 
 
 def path(n: int) -> sp.csr_array:

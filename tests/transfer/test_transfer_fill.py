@@ -13,13 +13,13 @@ from tempose.clips import Mesh
 from tempose.geometry import weld
 from tempose.metrics import Enclosed, volume_change, volumes
 from tempose.transfer import pairs_from_skin, transfer_motion
-from tempose.transfer._fill_kernel import fill_patch
-from tempose.transfer.fill import CAP, VolumeFill, make_patch
 from tempose.transfer.from_skeleton import prepare_skeleton
 from tempose.transfer.joint_patches import inner_strengths, joint_patches
-from tempose.transfer.links import inner_edges
-from tempose.transfer.volume_report import joint_volumes
-from tempose.transfer.welded import Welded
+from tempose.transfer.quality.volume_report import joint_volumes
+from tempose.transfer.solver._fill_kernel import fill_patch
+from tempose.transfer.solver.fill import CAP, VolumeFill, make_patch
+from tempose.transfer.solver.links import inner_edges
+from tempose.transfer.solver.welded import Welded
 
 
 def welded(mesh: Mesh) -> Welded:

@@ -9,7 +9,7 @@ from transfer_zoo import ZOO, near_rotations
 
 from tempose.metrics import flipped_percent
 from tempose.rotations import normalise
-from tempose.transfer.flip_kernel import FlipCounter
+from tempose.transfer.quality.flip_kernel import FlipCounter
 
 
 @pytest.mark.parametrize("name", ZOO)

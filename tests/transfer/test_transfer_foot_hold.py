@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from tempose.metrics import accelerations, skate
-from tempose.transfer.foot_hold import hold_feet
-from tempose.transfer.soles import find_sole
+from tempose.transfer.feet.foot_hold import hold_feet
+from tempose.transfer.feet.soles import find_sole
 
 HEIGHT, GROUND = 1.7, -0.3
 

@@ -11,9 +11,9 @@ from transfer_zoo import pieces, sphere, tube, wxyz
 
 from tempose.geometry import edge_list
 from tempose.transfer import MotionTransfer, pairs_from_skin
-from tempose.transfer.columns import Columns
 from tempose.transfer.from_skeleton import prepare_skeleton
-from tempose.transfer.geodesic_path import STATIONS, path_columns, shortest_paths, turning_far
+from tempose.transfer.turns.columns import Columns
+from tempose.transfer.turns.geodesic_path import STATIONS, path_columns, shortest_paths, turning_far
 
 
 def test_a_path_is_as_short_as_relaxing_every_edge_makes_it() -> None:

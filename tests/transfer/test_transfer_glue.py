@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 from transfer_zoo import near_rotations, sheet, sphere, wxyz
 
 from tempose.geometry import cotangent_laplacian
-from tempose.transfer.blocks import BLOCK, solve_blocks
-from tempose.transfer.glue import PoissonGlue
-from tempose.transfer.links import ExtraEdges
+from tempose.transfer.solver.blocks import BLOCK, solve_blocks
+from tempose.transfer.solver.glue import PoissonGlue
+from tempose.transfer.solver.links import ExtraEdges
 
 
 def field_of(Q: np.ndarray, n: int) -> np.ndarray:

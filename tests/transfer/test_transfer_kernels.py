@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 from transfer_zoo import as_rotation, wxyz
 
-from tempose.transfer.frame_kernels import add_faces_1, add_faces_8, spread_1, spread_8, write_frames
+from tempose.transfer.solver.frame_kernels import add_faces_1, add_faces_8, spread_1, spread_8, write_frames
 
 XYZW = [1, 2, 3, 0]
 DTYPES = pytest.mark.parametrize("dtype", [np.float32, np.float64])

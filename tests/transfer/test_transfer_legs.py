@@ -12,12 +12,12 @@ from transfer_bodies import clip_of, human_body
 from tempose.clips import Mesh, Skeleton, SkeletonClip
 from tempose.samples.skeletons import animal_skeleton
 from tempose.transfer import pairs_from_skin
-from tempose.transfer.bones import make_bones
+from tempose.transfer.bodies.bones import make_bones
+from tempose.transfer.feet.leg_spread import LegSpread, spread_legs
+from tempose.transfer.feet.legs import Leg, bone_leg, mesh_leg
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
-from tempose.transfer.leg_spread import LegSpread, spread_legs
-from tempose.transfer.legs import Leg, bone_leg, mesh_leg
-from tempose.transfer.links import ExtraEdges, link_pieces
-from tempose.transfer.reference import bone_rest
+from tempose.transfer.solver.links import ExtraEdges, link_pieces
+from tempose.transfer.turns.reference import bone_rest
 
 
 @lru_cache

@@ -11,10 +11,10 @@ from transfer_zoo import wxyz
 
 from tempose.clips import SkinnedMesh
 from tempose.rotations import IDENTITY, angle_between, multiply, rotate
-from tempose.transfer.bones import Bones
-from tempose.transfer.limb_ik import Limb, bend_axis, bones_below, find_limb, reach, two_bone_turns
-from tempose.transfer.limb_range import SOFT_FAR, SOFT_NEAR, within_range
-from tempose.transfer.pose import BonePose
+from tempose.transfer.bodies.bones import Bones
+from tempose.transfer.bodies.limb_ik import Limb, bend_axis, bones_below, find_limb, reach, two_bone_turns
+from tempose.transfer.bodies.limb_range import SOFT_FAR, SOFT_NEAR, within_range
+from tempose.transfer.bodies.pose import BonePose
 
 X, Y, Z = np.eye(3)
 

@@ -12,7 +12,7 @@ from transfer_zoo import ZOO, pieces, sheet, solver_for, sphere, tube, volume_of
 from tempose.clips import Mesh
 from tempose.geometry import cotangent_laplacian, edge_laplacian, vertex_normals
 from tempose.transfer import MotionTransfer
-from tempose.transfer.links import (
+from tempose.transfer.solver.links import (
     LINK_RADIUS,
     LINK_WEIGHT,
     SHELL,

@@ -11,7 +11,7 @@ from transfer_zoo import tube
 
 from tempose.kinematics.roles import find_roles
 from tempose.transfer import pairs_from_skin
-from tempose.transfer.marks import RIGID_PARTS, RING_SIZE, mark_bones, owned_faces
+from tempose.transfer.pairing.marks import RIGID_PARTS, RING_SIZE, mark_bones, owned_faces
 
 LENGTH, RADIUS, AROUND, RINGS = 2.0, 0.25, 36, 41
 

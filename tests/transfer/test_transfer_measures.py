@@ -15,11 +15,16 @@ from tempose.metrics import skate
 from tempose.rotations import rotate
 from tempose.samples.skeletons import human_skeleton
 from tempose.transfer import MotionTransfer
-from tempose.transfer.bones import make_bones
-from tempose.transfer.feet import Feet
-from tempose.transfer.measures import direction_measures, distortion_measures, foot_measures, soft_faces
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import bone_rest
+from tempose.transfer.bodies.bones import make_bones
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.feet.feet import Feet
+from tempose.transfer.quality.measures import (
+    direction_measures,
+    distortion_measures,
+    foot_measures,
+    soft_faces,
+)
+from tempose.transfer.turns.reference import bone_rest
 
 SKELETON = human_skeleton()
 ROLES = find_roles(SKELETON)

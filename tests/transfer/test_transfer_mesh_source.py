@@ -10,7 +10,7 @@ from transfer_zoo import ZOO, sphere, tube, wxyz
 
 from tempose.geometry import vertex_adjacency
 from tempose.rotations import angle_between
-from tempose.transfer.mesh_source import face_patches, patch_rotations, vertex_patches
+from tempose.transfer.turns.mesh_source import face_patches, patch_rotations, vertex_patches
 
 
 def rings_of(F: np.ndarray, n: int, seeds: set[int], k: int) -> set[int]:

@@ -43,7 +43,7 @@ def same(a: Pairs, b: Pairs) -> None:
         Pairs("vertices", [4, 0, 9], [1, 2, 3]),
         Pairs("faces", [4, 0, 9], [1, 2, 3], ("leg", "ear", 'Öhr, "left"\n')),
         Pairs("joints", ("Hips", "mixamorig:Hips", 'a "b"'), [7, 8, 2**31 - 1]),
-        Pairs("faces", [4, 0], [1, 2], how=("picked", "mirror"), comment="left knee was hard\nsee \"notes\""),
+        Pairs("faces", [4, 0], [1, 2], how=("picked", "mirror"), comment='left knee was hard\nsee "notes"'),
         Pairs("joints", ("a", "b"), [0, 1], ("p", "q"), {"a": [0.1, 1 / 3, -1e-17]}, {"b": [1, 2, 3]}),
     ],
 )

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from tempose.transfer.placement import fit_scale as fit_scale_of
-from tempose.transfer.placement import place_clip, root_steps
-from tempose.transfer.soles import find_sole
+from tempose.transfer.feet.placement import fit_scale as fit_scale_of
+from tempose.transfer.feet.placement import place_clip, root_steps
+from tempose.transfer.feet.soles import find_sole
 
 T, FPS, HEIGHT, SCALE = 120, 30.0, 1.7, 0.63
 STRIDE = 30

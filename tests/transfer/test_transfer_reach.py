@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from tempose.transfer.reach import within_reach
+from tempose.transfer.feet.reach import within_reach
 
 LENGTH = 0.9
 

@@ -17,9 +17,9 @@ from tempose.formats import load_clip, load_mesh, load_skeleton_clip, load_skin
 from tempose.kinematics.roles import find_roles
 from tempose.metrics import compare
 from tempose.transfer import Pairs, TransferResult, load_pairs, pairs_from_skin, transfer_motion
-from tempose.transfer.bones import make_bones
+from tempose.transfer.bodies.bones import make_bones
 from tempose.transfer.from_skeleton import prepare_skeleton
-from tempose.transfer.reference import bone_rest, choose_reference
+from tempose.transfer.turns.reference import bone_rest, choose_reference
 
 pytestmark = pytest.mark.real
 

@@ -15,10 +15,10 @@ from tempose.kinematics.roles import find_roles
 from tempose.rotations import conjugate, multiply, rotate
 from tempose.samples.skeletons import human_skeleton
 from tempose.samples.walk import walk
-from tempose.transfer.alignment import stands_upright
-from tempose.transfer.bones import make_bones
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import bone_motion, bone_rest, choose_reference
+from tempose.transfer.bodies.bones import make_bones
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.turns.alignment import stands_upright
+from tempose.transfer.turns.reference import bone_motion, bone_rest, choose_reference
 
 SKELETON = human_skeleton()
 ROLES = find_roles(SKELETON)

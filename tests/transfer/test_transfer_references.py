@@ -11,8 +11,8 @@ from transfer_zoo import as_rotation, near_rotations, solver_for, tube, wxyz
 
 from tempose.rotations import angle_between, multiply, normalise
 from tempose.transfer import consistent_signs, transfer_motion
-from tempose.transfer.references import SHORT, choose_references
-from tempose.transfer.singular import half_turns, singular_measures
+from tempose.transfer.turns.references import SHORT, choose_references
+from tempose.transfer.turns.singular import half_turns, singular_measures
 
 STILL = np.array([1.0, 0, 0, 0])
 

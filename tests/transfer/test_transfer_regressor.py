@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 from transfer_zoo import sphere
 
-from tempose.transfer.joint_regressor import apply_regressor, regress_points
+from tempose.transfer.bodies.joint_regressor import apply_regressor, regress_points
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])

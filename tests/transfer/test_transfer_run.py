@@ -19,7 +19,7 @@ from tempose.samples.skeletons import human_skeleton
 from tempose.samples.walk import walk
 from tempose.transfer import Pairs, TransferResult, pairs_from_skin, transfer_motion
 from tempose.transfer.from_skeleton import prepare_skeleton
-from tempose.transfer.reference import bone_motion
+from tempose.transfer.turns.reference import bone_motion
 
 NUMBERS = (
     "edge_ratio", "edge_ratio_max", "flipped_percent", "folded_percent", "volume_worst", "volume_mean",

@@ -14,8 +14,8 @@ from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.kinematics import rest_transforms
 from tempose.samples.skeletons import animal_skeleton, human_skeleton
 from tempose.transfer import MotionTransfer, pairs_from_skin
-from tempose.transfer.marks import owned_faces
-from tempose.transfer.skin_pairs import estimate_joints
+from tempose.transfer.pairing.marks import owned_faces
+from tempose.transfer.pairing.skin_pairs import estimate_joints
 
 SPOKEN = {
     "hips": "pelvis", "spine": "spine_01", "chest": "spine_02", "neck": "neck_01", "head": "head",

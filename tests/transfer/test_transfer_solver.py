@@ -10,8 +10,9 @@ from transfer_zoo import ZOO, as_rotation, centred, marked, near_rotations, shee
 
 from tempose.clips import Mesh
 from tempose.rotations import multiply
-from tempose.transfer import Anchor, MotionTransfer, fields
-from tempose.transfer.blocks import BLOCK
+from tempose.transfer import Anchor, MotionTransfer
+from tempose.transfer.solver import fields
+from tempose.transfer.solver.blocks import BLOCK
 
 IDENTITY = np.array([1.0, 0, 0, 0])
 

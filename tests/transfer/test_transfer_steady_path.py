@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose
 
-from tempose.transfer.steady_path import path_above, second_differences, steady_path
+from tempose.transfer.feet.steady_path import path_above, second_differences, steady_path
 
 
 def rows_at(frames: list[int], T: int) -> sp.csr_array:

@@ -13,11 +13,11 @@ from tempose.kinematics.roles import find_roles
 from tempose.rotations import angle_between, conjugate, multiply
 from tempose.samples.skeletons import human_skeleton
 from tempose.transfer import template_clip
-from tempose.transfer.bones import make_bones
-from tempose.transfer.mesh_source import face_patches, patch_rotations
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import bone_motion
-from tempose.transfer.template import bone_mesh
+from tempose.transfer.bodies.bones import make_bones
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.bodies.template import bone_mesh
+from tempose.transfer.turns.mesh_source import face_patches, patch_rotations
+from tempose.transfer.turns.reference import bone_motion
 
 
 @pytest.mark.parametrize(("length", "radius"), [(1.0, 0.2), (0.01, 1.0), (300.0, 5.0)])

@@ -9,7 +9,7 @@ from transfer_zoo import ZOO, as_rotation, marked, near_rotations
 
 from tempose.clips import Mesh
 from tempose.transfer import MotionTransfer
-from tempose.transfer.links import inner_edges
+from tempose.transfer.solver.links import inner_edges
 
 LINK = 5.0
 TRACE = 1e-7

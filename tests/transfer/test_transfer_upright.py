@@ -15,7 +15,7 @@ from tempose.clips import Mesh, SkeletonClip, Source
 from tempose.formats.conventions import to_file
 from tempose.samples.walk import walk
 from tempose.transfer import Pairs, TransferResult, load_pairs, pairs_from_skin, save_pairs, transfer_motion
-from tempose.transfer.upright import stand_up
+from tempose.transfer.pairing.upright import stand_up
 
 GUESSED = ("up", "unit")
 

@@ -15,13 +15,13 @@ from scipy.sparse.csgraph import (
 
 from tempose.clips import Mesh, MeshClip
 from tempose.geometry import edge_list, k_rings
-from tempose.transfer.fabric import Fabric
+from tempose.transfer.feet.mesh_feet import mesh_feet
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.mesh_feet import mesh_feet
-from tempose.transfer.mesh_source import RINGS, face_patches, patch_rotations, vertex_patches
-from tempose.transfer.motion_transfer import MotionTransfer
-from tempose.transfer.pairs import Pairs
-from tempose.transfer.signs import consistent_signs
+from tempose.transfer.pairing.pairs import Pairs
+from tempose.transfer.solver.fabric import Fabric
+from tempose.transfer.solver.motion_transfer import MotionTransfer
+from tempose.transfer.turns.mesh_source import RINGS, face_patches, patch_rotations, vertex_patches
+from tempose.transfer.turns.signs import consistent_signs
 from tempose.typing import FloatArray, IntArray
 
 MANY_PAIRS = 2000

@@ -9,24 +9,24 @@ import numpy as np
 from tempose.clips import Mesh, SkeletonClip
 from tempose.kinematics.roles import find_roles
 from tempose.rotations import multiply
-from tempose.transfer.alignment import align_reference
-from tempose.transfer.bones import Bones, make_bones, split_role
-from tempose.transfer.columns import Columns
-from tempose.transfer.fabric import Fabric, weave
-from tempose.transfer.facing import UP
-from tempose.transfer.feet import Feet, bone_feet, flat_stance
-from tempose.transfer.fields import HarmonicFields
-from tempose.transfer.geodesic_path import path_columns
+from tempose.transfer.bodies.bones import Bones, make_bones, split_role
+from tempose.transfer.bodies.facing import UP
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.feet.feet import Feet, bone_feet, flat_stance
 from tempose.transfer.joint_patches import inner_strengths, joint_patches, volume_fill
 from tempose.transfer.lead import LEAD, learn_lead
-from tempose.transfer.motion_transfer import Anchor, MotionTransfer
-from tempose.transfer.pairs import Pairs
-from tempose.transfer.pose import BonePose
-from tempose.transfer.reference import Reference, bone_motion, choose_reference
-from tempose.transfer.references import References, Singular
-from tempose.transfer.signs import consistent_signs
-from tempose.transfer.skin_pairs import estimate_joints
-from tempose.transfer.twist_columns import twist_columns
+from tempose.transfer.pairing.pairs import Pairs
+from tempose.transfer.pairing.skin_pairs import estimate_joints
+from tempose.transfer.solver.fabric import Fabric, weave
+from tempose.transfer.solver.fields import HarmonicFields
+from tempose.transfer.solver.motion_transfer import Anchor, MotionTransfer
+from tempose.transfer.turns.alignment import align_reference
+from tempose.transfer.turns.columns import Columns
+from tempose.transfer.turns.geodesic_path import path_columns
+from tempose.transfer.turns.reference import Reference, bone_motion, choose_reference
+from tempose.transfer.turns.references import References, Singular
+from tempose.transfer.turns.signs import consistent_signs
+from tempose.transfer.turns.twist_columns import twist_columns
 from tempose.typing import FloatArray, IntArray
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.transfer.bones import Bones, split_role
-from tempose.transfer.fill import REACH, Patch, VolumeFill, make_patch
-from tempose.transfer.motion_transfer import MotionTransfer
-from tempose.transfer.pose import BonePose
+from tempose.transfer.bodies.bones import Bones, split_role
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.solver.fill import REACH, Patch, VolumeFill, make_patch
+from tempose.transfer.solver.motion_transfer import MotionTransfer
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 FILLED = ("upper_arm", "forearm", "thigh", "shin")

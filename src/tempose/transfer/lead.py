@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.rotations import conjugate, from_rotation_vector, multiply, shortest_rotation, to_rotation_vector
-from tempose.transfer.bones import Bones, split_role
-from tempose.transfer.columns import Columns
-from tempose.transfer.joint_regressor import apply_regressor, regress_points
-from tempose.transfer.motion_transfer import MotionTransfer
-from tempose.transfer.pose import BonePose
+from tempose.transfer.bodies.bones import Bones, split_role
+from tempose.transfer.bodies.joint_regressor import apply_regressor, regress_points
+from tempose.transfer.bodies.pose import BonePose
+from tempose.transfer.solver.motion_transfer import MotionTransfer
+from tempose.transfer.turns.columns import Columns
 from tempose.typing import FloatArray, IntArray
 
 LEAD = 0.6

@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tempose.transfer.contacts import Intervals, given_contacts
-from tempose.transfer.feet import Feet
-from tempose.transfer.foot_hold import FADE
+from tempose.transfer.feet.contacts import Intervals, given_contacts
+from tempose.transfer.feet.feet import Feet
+from tempose.transfer.feet.foot_hold import FADE
+from tempose.transfer.feet.ground_plane import find_arms, lift_above, lowest
+from tempose.transfer.feet.legs import Leg
+from tempose.transfer.feet.placement import Placement, place_clip
+from tempose.transfer.feet.soles import FootFrames
+from tempose.transfer.feet.standing import Standing, hold_standing
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.ground_plane import find_arms, lift_above, lowest
-from tempose.transfer.legs import Leg
-from tempose.transfer.placement import Placement, place_clip
-from tempose.transfer.soles import FootFrames
-from tempose.transfer.standing import Standing, hold_standing
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 Contacts = bool | Intervals | BoolArray

@@ -10,8 +10,8 @@ from tempose.clips import Mesh, MeshClip, SkeletonClip
 from tempose.transfer.from_mesh import prepare_mesh
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
 from tempose.transfer.lead import LEAD
-from tempose.transfer.pairs import Pairs
-from tempose.transfer.references import Singular
+from tempose.transfer.pairing.pairs import Pairs
+from tempose.transfer.turns.references import Singular
 from tempose.typing import FloatArray
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from tempose.clips import MeshClip
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,13 @@ from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.adjustments.groups import group_by_part
 from tempose.transfer.adjustments.on_result import adjust
+from tempose.transfer.bodies.template import template_clip
 from tempose.transfer.contact_report import contact_facts, contact_warnings
 from tempose.transfer.frames import BLOCK, make_frames, release
 from tempose.transfer.from_skeleton import Prepared
 from tempose.transfer.lead import LEAD
-from tempose.transfer.matching import Matched, match
-from tempose.transfer.measuring import add_measures
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.matching import Matched, match
+from tempose.transfer.pairing.pairs import Pairs
 from tempose.transfer.placing import (
     Contacts,
     Placed,
@@ -26,9 +26,9 @@ from tempose.transfer.placing import (
     with_contacts,
 )
 from tempose.transfer.preparing import prepare
-from tempose.transfer.references import Singular, choose_references
+from tempose.transfer.quality.measuring import add_measures
 from tempose.transfer.result import TransferResult
-from tempose.transfer.template import template_clip
+from tempose.transfer.turns.references import Singular, choose_references
 from tempose.typing import FloatArray, Progress, silent
 
 

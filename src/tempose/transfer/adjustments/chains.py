@@ -9,9 +9,9 @@ import numpy as np
 
 from tempose.transfer.adjustments.limb_chain import LimbChain
 from tempose.transfer.adjustments.turn_chain import TurnChain
-from tempose.transfer.bones import Bones, split_role
-from tempose.transfer.limb_ik import Limb, bend_axis, bones_below, find_limb
-from tempose.transfer.pose import BonePose
+from tempose.transfer.bodies.bones import Bones, split_role
+from tempose.transfer.bodies.limb_ik import Limb, bend_axis, bones_below, find_limb
+from tempose.transfer.bodies.pose import BonePose
 from tempose.typing import FloatArray
 
 _NEAR_JOINT = 0.3

@@ -24,8 +24,8 @@ from tempose.transfer.adjustments.part_fields import (
 )
 from tempose.transfer.adjustments.parts import Part
 from tempose.transfer.adjustments.posing import job_with, pose_frames
+from tempose.transfer.bodies.limb_ik import bones_below
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.limb_ik import bones_below
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 BLOCK = 16

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.rotations import from_rotation_vector, multiply, rotate
-from tempose.transfer.limb_ik import Limb, reach
+from tempose.transfer.bodies.limb_ik import Limb, reach
 from tempose.typing import FloatArray
 
 STRETCH = 0.02

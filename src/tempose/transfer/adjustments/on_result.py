@@ -11,7 +11,7 @@ from typing import Any
 from tempose.transfer.adjustments.adjust import adjust_frames
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.frames import make_frames, release
-from tempose.transfer.measuring import add_measures
+from tempose.transfer.quality.measuring import add_measures
 from tempose.transfer.result import TransferResult
 from tempose.typing import Progress, silent
 

@@ -8,11 +8,11 @@ from scipy.sparse.csgraph import dijkstra
 
 from tempose.geometry import edge_list, weld
 from tempose.transfer.adjustments.parts import Part, bone_basis
-from tempose.transfer.bones import split_role
+from tempose.transfer.bodies.bones import split_role
+from tempose.transfer.bodies.limb_ik import Limb, bones_below
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.limb_field import limb_field
-from tempose.transfer.limb_ik import Limb, bones_below
-from tempose.transfer.marks import RIGID_PARTS
+from tempose.transfer.pairing.marks import RIGID_PARTS
+from tempose.transfer.solver.limb_field import limb_field
 from tempose.typing import FloatArray, IntArray
 
 _UNFELT, _FELT = 0.05, 0.5

@@ -11,9 +11,9 @@ import numpy as np
 from tempose.kinematics import ROLES
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.adjustments.chains import LimbChain, TurnChain, find_chain
+from tempose.transfer.bodies.joint_regressor import apply_regressor, regress_points
+from tempose.transfer.bodies.limb_ik import bones_below
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.joint_regressor import apply_regressor, regress_points
-from tempose.transfer.limb_ik import bones_below
 from tempose.typing import FloatArray, IntArray
 
 ROOT = "root"

@@ -8,7 +8,7 @@ import numpy as np
 
 from tempose.rotations import conjugate, multiply
 from tempose.transfer.from_skeleton import Prepared
-from tempose.transfer.references import References, choose_references
+from tempose.transfer.turns.references import References, choose_references
 from tempose.typing import FloatArray, IntArray
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.rotations import from_rotation_vector, multiply, rotate, shortest_rotation, to_rotation_vector
-from tempose.transfer.bones import Bones
-from tempose.transfer.limb_ik import bones_below
+from tempose.transfer.bodies.bones import Bones
+from tempose.transfer.bodies.limb_ik import bones_below
 from tempose.typing import FloatArray
 
 TRUNK_STRETCH = 0.06

@@ -15,7 +15,7 @@ from tempose.rotations import (
 from tempose.transfer.adjustments.adjustment import Adjustment
 from tempose.transfer.adjustments.curves import Key, make_layers, run_curve
 from tempose.transfer.adjustments.groups import Group
-from tempose.transfer.facing import heading, yaw
+from tempose.transfer.bodies.facing import heading, yaw
 from tempose.typing import FloatArray, IntArray
 
 

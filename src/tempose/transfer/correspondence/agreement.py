@@ -6,12 +6,12 @@ import numpy as np
 
 from tempose.clips import Mesh, Skeleton
 from tempose.kinematics.roles import find_roles
-from tempose.transfer.bones import split_role
+from tempose.transfer.bodies.bones import split_role
 from tempose.transfer.correspondence.front import feet_front
 from tempose.transfer.correspondence.side_names import swap_side
 from tempose.transfer.correspondence.similarity import align_points
 from tempose.transfer.correspondence.suggest import pair_points
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
 from tempose.typing import FloatArray
 
 _NEIGHBOURS = 6

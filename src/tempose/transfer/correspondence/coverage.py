@@ -12,7 +12,7 @@ from tempose.transfer.correspondence.agreement import disagreeing_pairs, exchang
 from tempose.transfer.correspondence.reach import face_pieces, far_regions, mark_distances, name_place
 from tempose.transfer.correspondence.ring_check import open_rings
 from tempose.transfer.correspondence.source_parts import unpaired_parts
-from tempose.transfer.pairs import FEWEST, Pairs
+from tempose.transfer.pairing.pairs import FEWEST, Pairs
 from tempose.typing import IntArray
 
 Severity = Literal["error", "warning", "note"]

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tempose.clips import Mesh
-from tempose.transfer.pairs import Kind, Pairs
+from tempose.transfer.pairing.pairs import Kind, Pairs
 from tempose.typing import IntArray
 
 

@@ -14,7 +14,7 @@ from tempose.kinematics.roles import find_roles
 from tempose.transfer.correspondence.side_names import swap_side
 from tempose.transfer.correspondence.suggest import pair_points
 from tempose.transfer.correspondence.symmetry import Symmetry, find_symmetry
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
 from tempose.typing import FloatArray, IntArray
 
 _TOO_FAR = 0.03

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, SkeletonClip
-from tempose.transfer.fabric import Fabric, weave
+from tempose.transfer.bodies.pose import BonePose
 from tempose.transfer.from_mesh import prepare_mesh
 from tempose.transfer.from_skeleton import Prepared, prepare_skeleton
-from tempose.transfer.measures import direction_measures, distortion_measures, soft_faces
-from tempose.transfer.pairs import Pairs
-from tempose.transfer.pose import BonePose
+from tempose.transfer.pairing.pairs import Pairs
+from tempose.transfer.quality.measures import direction_measures, distortion_measures, soft_faces
+from tempose.transfer.solver.fabric import Fabric, weave
 from tempose.typing import FloatArray
 
 

@@ -10,8 +10,8 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from tempose.clips import Mesh
 from tempose.geometry import edge_list, face_components, weld
-from tempose.transfer.links import link_pieces
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
+from tempose.transfer.solver.links import link_pieces
 from tempose.typing import FloatArray, IntArray
 
 _SMALLEST = 0.002

@@ -12,7 +12,7 @@ from tempose.transfer.correspondence.limb import Limb, find_limb
 from tempose.transfer.correspondence.rays import shoot_ring
 from tempose.transfer.correspondence.section import Loop, Sections
 from tempose.transfer.correspondence.similarity import Alignment
-from tempose.transfer.marks import RING_SIZE
+from tempose.transfer.pairing.marks import RING_SIZE
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 _SURE = 0.25

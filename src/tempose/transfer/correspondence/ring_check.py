@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.clips import Mesh
-from tempose.transfer.bones import split_role
+from tempose.transfer.bodies.bones import split_role
 from tempose.transfer.correspondence.limb import find_limb
 from tempose.transfer.correspondence.section import Sections
 from tempose.transfer.correspondence.suggest import pair_points
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
 from tempose.typing import FloatArray
 
 _GAP = 180.0

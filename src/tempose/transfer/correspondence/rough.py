@@ -8,10 +8,10 @@ import numpy as np
 
 from tempose.clips import Mesh
 from tempose.rotations import angle_between, from_matrix, to_matrix
+from tempose.transfer.bodies.facing import yaw
 from tempose.transfer.correspondence.closest import Cloud, make_cloud, match_clouds
 from tempose.transfer.correspondence.front import feet_front
 from tempose.transfer.correspondence.similarity import Alignment, fit_similarity
-from tempose.transfer.facing import yaw
 from tempose.typing import FloatArray
 
 UPRIGHT_LEAD = 1.5

@@ -8,7 +8,7 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.rotations import conjugate, from_matrix, multiply, polar_rotation, rotate, to_matrix
-from tempose.transfer.facing import yaw
+from tempose.transfer.bodies.facing import yaw
 from tempose.typing import FloatArray
 
 

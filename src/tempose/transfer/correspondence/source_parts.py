@@ -9,7 +9,7 @@ import numpy as np
 from tempose.clips import Mesh, Skeleton
 from tempose.kinematics.roles import find_roles
 from tempose.transfer.correspondence.reach import far_regions, mark_distances, name_place
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
 
 _LIMBS = ("thigh", "shin", "upper_arm", "forearm")
 _FAR = 0.2

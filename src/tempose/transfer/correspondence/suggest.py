@@ -14,7 +14,7 @@ from tempose.transfer.correspondence.rough import align_meshes
 from tempose.transfer.correspondence.similarity import Alignment, align_points
 from tempose.transfer.correspondence.warp import Warp
 from tempose.transfer.correspondence.ways import Ways
-from tempose.transfer.pairs import Pairs
+from tempose.transfer.pairing.pairs import Pairs
 from tempose.typing import FloatArray, IntArray
 
 _NORMAL = 0.03

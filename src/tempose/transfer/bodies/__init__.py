@@ -1,0 +1,1 @@
+"""Bones in space: which there are, where they are, how far they reach."""

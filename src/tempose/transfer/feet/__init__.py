@@ -1,0 +1,1 @@
+"""Feet: where they stand, and how they are held there."""

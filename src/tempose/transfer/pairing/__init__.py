@@ -1,0 +1,1 @@
+"""Which places of the source move which places of the target."""

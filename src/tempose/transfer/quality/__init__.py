@@ -1,0 +1,1 @@
+"""How good a transfer is: pose, distortion, volume, feet."""

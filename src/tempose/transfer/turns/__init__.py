@@ -1,0 +1,1 @@
+"""From the motion of the source to the rotations of the marks."""
