@@ -1,6 +1,6 @@
 """Deformation transfer of Sumner and Popović, plainly: what the horse's gallop on the camel is compared with.
 
-    python benchmarks/sumner_popovic.py        prints both rows, writes the sheet to docs/gallery
+    python benchmarks/sumner_popovic.py        renews their table in docs/results.md and the sheet
 
 Correspondence by the non-rigid registration of trimesh, which implements section 4 of their paper; transfer
 by its section 3, one sparse least squares problem for the positions of the target's vertices and of a fourth
@@ -21,7 +21,7 @@ import trimesh
 from scipy.spatial import KDTree
 
 from real_bodies import DATA, ROOT
-from results_page import line, table
+from results_page import line, table, write_block
 from results_transfer import camel
 from tempose.clips import Mesh, MeshClip
 from tempose.formats import load_clip, load_mesh
@@ -161,8 +161,9 @@ def main() -> None:
         line("Sumner-Popović, plain", *times, *measures(V, target, turns)),
         line("Tempose", *own, *measures(np.asarray(ours.clip.vertices), target, turns)),
     ]
-    print("\n".join(table(COLUMNS, rows)))
-    theirs = MeshClip(V.astype(np.float32), replace(target, name="Sumner-Popović"), 24)
+    print("\n".join(rows))
+    write_block("sumner-popovic", table(COLUMNS, rows))
+    theirs = MeshClip(V.astype(np.float32), replace(target, name="Sumner, Popovic"), 24)
     mine = MeshClip(ours.clip.vertices, replace(target, name="Tempose"), 24)
     shown = [int(t) for t in np.linspace(0, 23, 6)]
     sheet = contact_sheet([clip, theirs, mine], frames=shown, views=("side",))
