@@ -14,9 +14,12 @@ import pytest
 from PIL import Image
 
 import tempose
+from tempose.cli.pairs import _towards_us
 from tempose.clips import Mesh, Skeleton, SkinnedMesh
+from tempose.rotations import rotate
 from tempose.samples.skeletons import human_skeleton
-from tempose.transfer import mark_colors
+from tempose.transfer import Pairs, mark_colors
+from tempose.transfer.bodies.facing import yaw
 from tempose.transfer.pairing.found_pairs import Found
 
 Run = Callable[..., Any]
@@ -192,3 +195,20 @@ def test_contradicting_options_are_refused(run: Run, job: Path) -> None:
     assert ran.code == 2 and "leave one of --embed and --weights out" in ran.err.splitlines()[-1]
     ran = run("transfer", "walk.bvh", "boxes.npz", "--embed", "--pairs", "pairs.json", "-o", "out.npz")
     assert ran.code == 2 and "leave one of --embed and --pairs out" in ran.err.splitlines()[-1]
+
+
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 217.0])
+def test_the_preview_shows_the_body_from_its_own_front(degrees: float) -> None:
+    V = np.random.default_rng(3).normal(size=(12, 3))
+    V[:6, 0] += 5.0
+    V[6:, 0] -= 5.0
+    V[6:] = V[:6] * [-1.0, 1.0, 1.0]
+    F = np.arange(12).reshape(4, 3)
+    parts = ("left_hand", "left_foot", "right_hand", "right_foot")
+    pairs = Pairs("joints", parts, np.arange(4), parts, joints={"left_hand": V[0]}, ends={"left_hand": V[1]})
+    turned = Mesh(rotate(yaw(np.radians(degrees)), V), F)
+    shown, bones = _towards_us(turned, pairs)
+    np.testing.assert_allclose(shown.vertices, V, atol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.norm(bones[0, 1] - bones[0, 0]), np.linalg.norm(V[1] - V[0]), rtol=1e-12
+    )

@@ -101,7 +101,7 @@ def _faces_per_joint(motion: SkeletonClip, found: Pairs) -> dict[str, dict[str, 
 def _picture(mesh: Mesh, found: Pairs) -> Any:
     import numpy as np
 
-    bones = tempose.transfer.bone_segments(found)
+    mesh, bones = _towards_us(mesh, found)
     look: dict[str, Any] = {
         "cell": 480,
         "segments": bones[None] if len(bones) else None,
@@ -110,6 +110,23 @@ def _picture(mesh: Mesh, found: Pairs) -> Any:
     }
     views = [tempose.render.contact_sheet(mesh, 1, (view,), **look) for view in ("front", "back", "side")]
     return np.concatenate(views, axis=1)
+
+
+def _towards_us(mesh: Mesh, found: Pairs) -> tuple[Mesh, Any]:
+    """Turn target and bones so that the body's left is on +X, whichever way it faces."""
+    import numpy as np
+
+    from tempose.rotations import rotate
+    from tempose.transfer.bodies.facing import heading, yaw
+
+    bones = tempose.transfer.bone_segments(found)
+    parts = np.array(found.parts or [""] * len(found))
+    centres = mesh.vertices[mesh.faces[found.target]].mean(axis=1)
+    left, right = (centres[np.char.startswith(parts, side)] for side in ("left_", "right_"))
+    if len(left) == 0 or len(right) == 0:
+        return mesh, bones
+    turn = yaw(np.pi / 2 - heading(left.mean(axis=0) - right.mean(axis=0)))
+    return mesh.with_vertices(rotate(turn, mesh.vertices)), rotate(turn, bones)
 
 
 def _tell(found: dict[str, Any], out: Path | None, preview: Path | None, json: bool) -> None:
