@@ -203,12 +203,14 @@ def test_the_preview_shows_the_body_from_its_own_front(degrees: float) -> None:
     V[:6, 0] += 5.0
     V[6:, 0] -= 5.0
     V[6:] = V[:6] * [-1.0, 1.0, 1.0]
+    W = rotate(yaw(np.radians(degrees)), V)
     F = np.arange(12).reshape(4, 3)
     parts = ("left_hand", "left_foot", "right_hand", "right_foot")
-    pairs = Pairs("joints", parts, np.arange(4), parts, joints={"left_hand": V[0]}, ends={"left_hand": V[1]})
-    turned = Mesh(rotate(yaw(np.radians(degrees)), V), F)
+    pairs = Pairs("joints", parts, np.arange(4), parts, joints={"left_hand": W[0]}, ends={"left_hand": W[1]})
+    turned = Mesh(W, F)
     shown, bones = _towards_us(turned, pairs)
     np.testing.assert_allclose(shown.vertices, V, atol=1e-12)
     np.testing.assert_allclose(
         np.linalg.norm(bones[0, 1] - bones[0, 0]), np.linalg.norm(V[1] - V[0]), rtol=1e-12
     )
+    np.testing.assert_allclose(bones[0], V[:2], atol=1e-12)

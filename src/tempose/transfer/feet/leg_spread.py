@@ -8,14 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from tempose.geometry import cotangent_laplacian, edge_laplacian, weld
+from tempose.geometry import weld
 from tempose.linalg import harmonic_extension
 from tempose.transfer.feet.legs import Leg
+from tempose.transfer.solver.fabric import field_laplacian
 from tempose.transfer.solver.links import ExtraEdges
 from tempose.typing import FloatArray, IntArray
-
-_TRACE = 1e-7
-"""Weight of every edge besides its cotangents, so that clamped ones leave no vertex without hold."""
 
 
 @dataclass(frozen=True)
@@ -74,13 +72,7 @@ def spread_legs(V: FloatArray, F: IntArray, legs: Sequence[Leg], links: ExtraEdg
         free[inverse[leg.foot]] = False
         near = F[free[F].any(axis=1)]
         tied = free[links.pairs].any(axis=1)
-        edges = np.concatenate([near[:, [0, 1]], near[:, [1, 2]], near[:, [2, 0]]])
-        edges = edges[edges[:, 0] != edges[:, 1]]
-        L = (
-            cotangent_laplacian(V, near, clamp=True)
-            + edge_laplacian(links.pairs[tied], links.weights[tied], n)
-            + edge_laplacian(edges, np.full(len(edges), _TRACE), n)
-        )
+        L = field_laplacian(V, near, ExtraEdges(links.pairs[tied], links.weights[tied]))
         follows = np.zeros(n)
         follows[inverse[leg.foot]] = 1.0
         known = np.flatnonzero(~free)

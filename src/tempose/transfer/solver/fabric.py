@@ -13,6 +13,8 @@ from tempose.linalg.ordering import nested_dissection
 from tempose.transfer.solver.links import ExtraEdges, link_pieces, shell_edges
 from tempose.typing import FloatArray, IntArray
 
+_TRACE = 1e-7
+
 
 @dataclass(frozen=True)
 class Fabric:
@@ -54,16 +56,35 @@ def weave(mesh: Mesh) -> Fabric:
     first, inverse = weld(mesh.vertices)
     V, F = mesh.vertices[first], inverse[mesh.faces]
     links = link_pieces(V, F)
-    matrix = cotangent_laplacian(V, F, clamp=True) + edge_laplacian(links.pairs, links.weights, len(V))
-    matrix = matrix + edge_laplacian(*_slight_edges(F), len(V))
+    matrix = field_laplacian(V, F, links)
     shell = shell_edges(V, F)
     # one order serves the fields and the glue
     order = nested_dissection(matrix + edge_laplacian(shell.pairs, shell.weights, len(V)))
     return Fabric(mesh, first, inverse, V, F, links, shell, matrix, order)
 
 
-def _slight_edges(F: IntArray) -> tuple[IntArray, FloatArray]:
-    # clamped weights may leave a vertex without any: a trace of the graph Laplacian keeps it attached
+def field_laplacian(V: FloatArray, F: IntArray, links: ExtraEdges) -> Any:
+    """Laplacian of harmonic fields: weights that are not negative, pieces linked, no vertex without hold.
+
+    Parameters
+    ----------
+    V : (u, 3) float
+        Vertices, welded.
+    F : (m, 3) int
+        Faces, all of the mesh or a part of it.
+    links : ExtraEdges
+        Edges between its pieces.
+
+    Returns
+    -------
+    (u, u) scipy.sparse.csr_array
+        Positive semidefinite.
+    """
     edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     edges = edges[edges[:, 0] != edges[:, 1]]
-    return edges, np.full(len(edges), 1e-7)
+    # clamped weights may leave a vertex without any: a trace of the graph Laplacian keeps it attached
+    return (
+        cotangent_laplacian(V, F, clamp=True)
+        + edge_laplacian(links.pairs, links.weights, len(V))
+        + edge_laplacian(edges, np.full(len(edges), _TRACE), len(V))
+    )

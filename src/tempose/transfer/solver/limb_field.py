@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.geometry import cotangent_laplacian, edge_laplacian, weld
+from tempose.geometry import weld
 from tempose.linalg import harmonic_extension
+from tempose.transfer.solver.fabric import field_laplacian
 from tempose.transfer.solver.motion_transfer import MotionTransfer
 from tempose.typing import FloatArray, IntArray
 
@@ -37,11 +38,6 @@ def limb_field(solver: MotionTransfer, one: IntArray, zero: IntArray) -> FloatAr
     if len(known) == 0 or np.ptp(values[known]) == 0:
         return np.full(len(mesh.vertices), values[known[0]] if len(known) else 0.0)
     V, F = mesh.vertices[first], inverse[mesh.faces]
-    L = cotangent_laplacian(V, F, clamp=True) + edge_laplacian(
-        solver.links.pairs, solver.links.weights, len(V)
-    )
-    # a vertex without any weight would make the system singular; so little changes nothing else
-    edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    L = L + edge_laplacian(edges, np.full(len(edges), 1e-7), len(V))
+    L = field_laplacian(V, F, solver.links)
     h = np.clip(harmonic_extension(L, known, values[known][:, None])[:, 0], 0.0, 1.0)
     return (h * h * (3 - 2 * h))[inverse]
