@@ -90,4 +90,5 @@ def _show(reports: list[dict[str, Any]]) -> None:
 def _text(value: Any) -> str:
     if value is None:
         return "-"
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    # what is below a thousandth is rounding, not news
+    return f"{round(value, 3):.3g}" if isinstance(value, float) else str(value)
