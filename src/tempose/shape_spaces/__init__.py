@@ -1,0 +1,7 @@
+"""Meshes of one topology as points of a Euclidean space: one file, or room, a shape space."""
+
+from tempose.shape_spaces.registry import SPACES, shape_space, space_from_state
+from tempose.shape_spaces.space import ShapeSpace
+from tempose.shape_spaces.vertex import VertexSpace
+
+__all__ = ["SPACES", "ShapeSpace", "VertexSpace", "shape_space", "space_from_state"]

@@ -1,0 +1,1 @@
+"""The pose signal g: from the plane of poses to shape coordinates; where the frames lie in that plane."""

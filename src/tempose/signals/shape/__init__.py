@@ -1,0 +1,1 @@
+"""The shape signal h: a linear subspace of a shape space."""

@@ -1,0 +1,1 @@
+"""The time signal f: a curve through the pose plane, and the clock along it."""
