@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Protocol
 
-from tempose.typing import FloatArray
+from tempose.typing import FloatArray, IntArray
 
 
 class ShapeSpace(Protocol):
@@ -100,7 +100,7 @@ class ShapeSpace(Protocol):
         ...
 
     @classmethod
-    def from_clip(cls, rest: FloatArray, faces: FloatArray, frames: FloatArray | None = None) -> ShapeSpace:
+    def from_clip(cls, rest: FloatArray, faces: IntArray, frames: FloatArray | None = None) -> ShapeSpace:
         """Make the space of a mesh, or the one that suits its clip best.
 
         Parameters

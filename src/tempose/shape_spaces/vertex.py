@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from tempose.typing import FloatArray
+from tempose.typing import FloatArray, IntArray
 
 
 class VertexSpace:
@@ -92,7 +92,7 @@ class VertexSpace:
         return cls(int(state["n_vertices"][0]))
 
     @classmethod
-    def from_clip(cls, rest: FloatArray, faces: FloatArray, frames: FloatArray | None = None) -> VertexSpace:
+    def from_clip(cls, rest: FloatArray, faces: IntArray, frames: FloatArray | None = None) -> VertexSpace:
         """Make the space of a mesh.
 
         Parameters

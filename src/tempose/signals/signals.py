@@ -10,6 +10,7 @@ from tempose.clips import Mesh
 from tempose.curves import MonotoneMap, Spline
 from tempose.signals.pose.signal import PoseSignal
 from tempose.signals.shape.signal import ShapeSignal
+from tempose.signals.time.origin import Origin
 from tempose.signals.time.signal import TimeSignal
 from tempose.typing import FloatArray
 
@@ -40,6 +41,8 @@ class Signals:
     """Frames per second of what is played."""
     mesh: Mesh
     """Topology, UVs, groups and name of what is played."""
+    origin: Origin | None = None
+    """Ticks to ticks of the captured clip, once pieces of it were cut, pasted or repeated; None: the same."""
 
     @property
     def duration(self) -> float:
@@ -89,5 +92,8 @@ class Signals:
             ``x_c + g(f) - g(f_0)``; without a path, g(f).
         """
         t = self.ticks(seconds)
-        x = self.pose(self.time(t), t)
-        return x if self.path is None else self.path(t) + (x - self.pose(self.time.before_edits(t), t))
+        captured = t if self.origin is None else self.origin(t)
+        x = self.pose(self.time(t), captured)
+        if self.path is None:
+            return x
+        return self.path(t) + (x - self.pose(self.time.before_edits(t), captured))
