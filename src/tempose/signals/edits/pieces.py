@@ -1,0 +1,175 @@
+"""Edits that cut what is played into pieces and put them together anew."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from tempose.signals.edits._frames import frame_seconds, frame_span
+from tempose.signals.signals import Signals
+
+
+def cut(signals: Signals, start: float, stop: float) -> Signals:
+    """Take a part out.
+
+    Parameters
+    ----------
+    signals : Signals
+        What is edited; stays as it is.
+    start, stop : float
+        Frames from 0: `start` is the first that goes, `stop` the first that stays.
+
+    Returns
+    -------
+    Signals
+        ``stop - start`` frames shorter, smooth at the seam.
+
+    Raises
+    ------
+    ValueError
+        If there are no such frames or nothing would be left.
+    """
+    a, b = frame_span(signals, start, stop)
+    return _spliced(
+        signals, [(0.0, a), (b, signals.duration)], "cut leaves nothing: from and to span the clip"
+    )
+
+
+def keep(signals: Signals, start: float, stop: float) -> Signals:
+    """Keep a part and drop the rest.
+
+    Parameters
+    ----------
+    signals : Signals
+        What is edited; stays as it is.
+    start, stop : float
+        Frames from 0: the first and the last that stay.
+
+    Returns
+    -------
+    Signals
+        Of that part.
+
+    Raises
+    ------
+    ValueError
+        If there are no such frames.
+    """
+    return _spliced(signals, [frame_span(signals, start, stop)])
+
+
+def loop(signals: Signals, start: float, stop: float, times: int) -> Signals:
+    """Play a part several times.
+
+    Parameters
+    ----------
+    signals : Signals
+        What is edited; stays as it is.
+    start, stop : float
+        Frames from 0: `stop` shows, or nearly, what `start` does.
+    times : int
+        How often in all; 1 changes nothing.
+
+    Returns
+    -------
+    Signals
+        ``(times - 1) (stop - start)`` frames longer, smooth at the seams.
+
+    Raises
+    ------
+    ValueError
+        If there are no such frames or `times` is not 1 or more.
+    """
+    a, b = frame_span(signals, start, stop)
+    if isinstance(times, bool) or times != int(times) or times < 1:
+        raise ValueError(f"times must be 1 or more, got {times!r}")
+    if times == 1:
+        return signals
+    return _spliced(signals, [(0.0, b), *[(a, b)] * (int(times) - 2), (a, signals.duration)])
+
+
+def paste(signals: Signals, start: float, stop: float, at: float) -> Signals:
+    """Copy a part to another moment.
+
+    Parameters
+    ----------
+    signals : Signals
+        What is edited; stays as it is.
+    start, stop : float
+        Frames from 0: where the part begins and ends.
+    at : float
+        Frame from 0 at which the copy begins; what was there comes after it.
+
+    Returns
+    -------
+    Signals
+        ``stop - start`` frames longer, smooth at the seams.
+
+    Raises
+    ------
+    ValueError
+        If there are no such frames.
+    """
+    a, b = frame_span(signals, start, stop)
+    c = frame_seconds(signals, at, "at")
+    return _spliced(signals, [(0.0, c), (a, b), (c, signals.duration)])
+
+
+def reverse(signals: Signals, start: float, stop: float) -> Signals:
+    """Play a part backwards.
+
+    Parameters
+    ----------
+    signals : Signals
+        What is edited; stays as it is.
+    start, stop : float
+        Frames from 0: where the part begins and ends.
+
+    Returns
+    -------
+    Signals
+        As long as before, smooth at the seams.
+
+    Raises
+    ------
+    ValueError
+        If there are no such frames.
+    """
+    a, b = frame_span(signals, start, stop)
+    return _spliced(signals, [(0.0, a), (b, a), (b, signals.duration)])
+
+
+def close_loop(signals: Signals, start: float, stop: float, insert: float | None = None) -> Signals:
+    """Keep a part that, played again and again, has no seam.
+
+    Parameters
+    ----------
+    signals : Signals
+        What is edited; stays as it is.
+    start, stop : float
+        Frames from 0: where the loop begins and where it begins anew.
+    insert : float, optional
+        Frames to insert between end and begin; None lets the distance between the two decide.
+
+    Returns
+    -------
+    Signals
+        The loop, once.
+
+    Raises
+    ------
+    ValueError
+        If there are no such frames.
+    """
+    frame_span(signals, start, stop)
+    close: Any = import_module("tempose.signals.loops").close_loop
+    return close(signals, start, stop, insert=insert)
+
+
+def _spliced(signals: Signals, pieces: list[tuple[float, float]], empty: str = "") -> Signals:
+    short = 1e-9 * signals.duration
+    wanted = [(a, b) for a, b in pieces if abs(b - a) > short]
+    if not wanted:
+        raise ValueError(empty)
+    splice: Any = import_module("tempose.signals.time.splice").splice
+    return splice(signals, wanted)
