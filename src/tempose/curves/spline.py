@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline, CubicSpline, PPoly
 
 from tempose._validate import as_floats, read_only
+from tempose.curves._kernels import evaluate_spline
 from tempose.typing import FloatArray
 
 
@@ -28,13 +28,18 @@ class Spline:
                 "knots must not fall, must span an interval and belong to 4 or more controls, "
                 f"got {len(controls)} controls over {knots[0]:.6g} .. {knots[-1]:.6g}"
             )
-        object.__setattr__(self, "knots", read_only(knots))
-        object.__setattr__(self, "controls", read_only(controls))
+        object.__setattr__(self, "knots", read_only(np.ascontiguousarray(knots)))
+        object.__setattr__(self, "controls", read_only(np.ascontiguousarray(controls)))
 
     @property
     def domain(self) -> tuple[float, float]:
         """First and last parameter."""
         return float(self.knots[3]), float(self.knots[-4])
+
+    @property
+    def breaks(self) -> FloatArray:
+        """(K,) the different knots of the domain, ascending: between them the curve is one cubic."""
+        return np.unique(self.knots[3 : len(self.knots) - 3])
 
     def __call__(self, u: FloatArray | float, derivative: int = 0) -> FloatArray:
         """Evaluate the curve or a derivative.
@@ -51,45 +56,70 @@ class Spline:
         (..., c) ndarray
             Points of the curve, or derivatives by the parameter.
         """
-        u = np.clip(np.asarray(u, dtype=np.float64), *self.domain)
-        return BSpline.construct_fast(self.knots, self.controls, 3)(u, nu=derivative)
+        u = np.asarray(u, dtype=np.float64)
+        points = evaluate_spline(self.knots, self.controls, u.reshape(-1), derivative)
+        return points.reshape(*u.shape, self.controls.shape[1])
 
+    def support(self, j: int) -> tuple[float, float]:
+        """Return between which parameters a control point has a say; outside, moving it changes no bit.
 
-def interpolating_spline(u: FloatArray, points: FloatArray) -> Spline:
-    """Return the natural cubic spline through points.
+        Parameters
+        ----------
+        j : int
+            Index of the control.
 
-    Parameters
-    ----------
-    u : (n,) float
-        Ascending parameters, n >= 2.
-    points : (n, c) float
-        Where the curve is at those parameters.
+        Returns
+        -------
+        tuple of float
+            First and last parameter of its support, inside the domain.
 
-    Returns
-    -------
-    Spline
-        With n + 2 controls.
+        Raises
+        ------
+        ValueError
+            If there is no such control.
+        """
+        if not 0 <= j < len(self.controls):
+            raise ValueError(f"control must be 0 to {len(self.controls) - 1}, got {j}")
+        first, last = self.domain
+        return max(float(self.knots[j]), first), min(float(self.knots[j + 4]), last)
 
-    Raises
-    ------
-    ValueError
-        If the parameters do not ascend or the shapes differ.
-    """
-    u = as_floats(u, "u", ("n",))
-    points = as_floats(points, "points", (len(u), "c"))
-    if len(u) < 2 or (np.diff(u) <= 0).any():
-        raise ValueError(f"u must hold 2 or more ascending parameters, got {len(u)}")
-    pieces = CubicSpline(u, points, bc_type="natural")
-    knots = np.concatenate([[u[0]] * 3, u, [u[-1]] * 3])
-    return Spline(knots, _controls(pieces, knots))
+    def with_controls(self, controls: FloatArray) -> Spline:
+        """Return the curve with other control points over the same knots.
 
+        Parameters
+        ----------
+        controls : (k, c) float
+            Control points.
 
-def _controls(pieces: PPoly, knots: FloatArray) -> FloatArray:
-    # the blossom of the polynomial on the middle span of a control is the control itself
-    k = len(knots) - 4
-    at = np.clip(np.arange(k) + 1, 3, k - 1)
-    mid = 0.5 * (knots[at] + knots[at + 1])
-    a, b, c = (knots[np.arange(k) + i] - mid for i in (1, 2, 3))
-    p, d1, d2, d3 = (pieces(mid, nu=i) for i in range(4))
-    s1, s2, s3 = (a + b + c) / 3, (a * b + b * c + c * a) / 3, a * b * c
-    return p + s1[:, None] * d1 + s2[:, None] * d2 / 2 + s3[:, None] * d3 / 6
+        Returns
+        -------
+        Spline
+            The new curve.
+        """
+        return Spline(self.knots, controls)
+
+    def shifted(self, by: float) -> Spline:
+        """Return the curve with its parameters moved along.
+
+        Parameters
+        ----------
+        by : float
+            Added to every parameter.
+
+        Returns
+        -------
+        Spline
+            ``shifted(u + by) = self(u)``.
+        """
+        return self if by == 0 else Spline(self.knots + by, self.controls)
+
+    def reversed(self) -> Spline:
+        """Return the curve run backwards over the same domain.
+
+        Returns
+        -------
+        Spline
+            ``reversed(first + last - u) = self(u)``.
+        """
+        first, last = self.domain
+        return Spline((first + last) - self.knots[::-1], self.controls[::-1])

@@ -1,0 +1,64 @@
+"""Cubic splines through points: natural ends, or periodic."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PPoly
+
+from tempose._validate import as_floats
+from tempose.curves.spline import Spline
+from tempose.typing import FloatArray
+
+
+def interpolating_spline(u: FloatArray, points: FloatArray) -> Spline:
+    """Return the natural cubic spline through points.
+
+    Parameters
+    ----------
+    u : (n,) float
+        Ascending parameters, n >= 2.
+    points : (n, c) float
+        Where the curve is at those parameters.
+
+    Returns
+    -------
+    Spline
+        With n + 2 controls.
+
+    Raises
+    ------
+    ValueError
+        If the parameters do not ascend or the shapes differ.
+    """
+    u = as_floats(u, "u", ("n",))
+    points = as_floats(points, "points", (len(u), "c"))
+    if len(u) < 2 or (np.diff(u) <= 0).any():
+        raise ValueError(f"u must hold 2 or more ascending parameters, got {len(u)}")
+    pieces = CubicSpline(u, points, bc_type="natural")
+    knots = np.concatenate([[u[0]] * 3, u, [u[-1]] * 3])
+    return Spline(knots, controls_of(pieces, knots))
+
+
+def controls_of(pieces: PPoly, knots: FloatArray) -> FloatArray:
+    """Return the control points of a C2 piecewise cubic.
+
+    Parameters
+    ----------
+    pieces : PPoly
+        The curve, with values (c,).
+    knots : (k + 4,) float
+        Its breaks, the ends fourfold.
+
+    Returns
+    -------
+    (k, c) ndarray
+        Controls.
+    """
+    # the blossom of the polynomial on the middle span of a control is the control itself
+    k = len(knots) - 4
+    at = np.clip(np.arange(k) + 1, 3, k - 1)
+    mid = 0.5 * (knots[at] + knots[at + 1])
+    a, b, c = (knots[np.arange(k) + i] - mid for i in (1, 2, 3))
+    p, d1, d2, d3 = (pieces(mid, nu=i) for i in range(4))
+    s1, s2, s3 = (a + b + c) / 3, (a * b + b * c + c * a) / 3, a * b * c
+    return p + s1[:, None] * d1 + s2[:, None] * d2 / 2 + s3[:, None] * d3 / 6

@@ -1,0 +1,180 @@
+"""A spline spliced from pieces of itself, with the jumps at the seams carried away."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose.curves.join import join_splines, with_inner_knots
+from tempose.curves.offsets import Offset, carried, damped_offset, faded_offset
+from tempose.curves.refine import slice_spline
+from tempose.curves.spline import Spline
+from tempose.typing import FloatArray
+
+Piece = tuple[float, float]
+"""Start and stop; a stop before the start runs backwards."""
+
+REACH = 8.0
+"""Half-lives after which a damped offset is exactly 0."""
+
+
+@dataclass(frozen=True)
+class Seam:
+    """How two pieces meet, in units of the curve's parameter."""
+
+    half_life: float = 3.0
+    """A jump is carried by damped offsets of this half-life, one half on either side..."""
+    gap: float = 0.0
+    """...unless a bridge of this length is put between, and no piece changes..."""
+    fade: float = 0.0
+    """...or both pieces are played on for half this length beyond the seam, and crossfaded."""
+
+
+def splice_spline(
+    spline: Spline, pieces: Sequence[Piece], seams: Sequence[Seam], *, closed: bool = False
+) -> Spline:
+    """Return pieces of a curve one after another, C2.
+
+    Parameters
+    ----------
+    spline : Spline
+        The curve.
+    pieces : sequence of (start, stop)
+        In units of its parameter; no length may be 0.
+    seams : sequence of Seam
+        One between any two pieces, and one more from the last to the first where closed.
+    closed : bool, default False
+        Whether the end shall meet the start, too.
+
+    Returns
+    -------
+    Spline
+        From 0; the curve beyond the reach of the seams is the same to rounding.
+    """
+    parts = [with_inner_knots(_piece(spline, piece), 3) for piece in pieces]
+    n = len(parts)
+    out = list(parts)
+    bridges: dict[int, Spline] = {}
+    for i in range(n if closed else n - 1):
+        j, seam = (i + 1) % n, seams[i]
+        left, right = _end_state(parts[i], at_end=True), _end_state(parts[j], at_end=False)
+        if seam.gap > 0:
+            bridges[i] = bridge(left, right, seam.gap)
+            continue
+        towards = _offsets(spline, pieces[i], pieces[j], left, right, seam)
+        if towards is not None:
+            out[i] = carried(out[i], towards[0], at_end=True)
+            out[j] = carried(out[j], towards[1], at_end=False)
+    laid: list[Spline] = []
+    for i, part in enumerate(out):
+        laid.append(part)
+        if i in bridges:
+            laid.append(bridges[i])
+    return join_splines([laid[0].shifted(-laid[0].domain[0]), *laid[1:]])
+
+
+def _piece(spline: Spline, piece: Piece) -> Spline:
+    part = slice_spline(spline, min(piece), max(piece))
+    return part if piece[0] < piece[1] else part.reversed()
+
+
+def _end_state(part: Spline, *, at_end: bool) -> FloatArray:
+    u = part.domain[1 if at_end else 0]
+    return np.stack([part(u, order) for order in range(3)])
+
+
+def _offsets(
+    spline: Spline, before: Piece, after: Piece, left: FloatArray, right: FloatArray, seam: Seam
+) -> tuple[Offset, Offset] | None:
+    jump = right - left
+    if not jump.any():
+        return None
+    lengths = [abs(b - a) for a, b in (before, after)]
+    if seam.fade > 0:
+        half = min(0.5 * seam.fade, *lengths, _beyond(spline, before[1], before), _ahead(spline, after))
+        if half > 1e-3 * seam.fade:
+            return _crossfade(spline, before, after, half)
+    backwards = np.array([1.0, -1.0, 1.0])[:, None]
+    reaches = [min(REACH * seam.half_life, length) for length in lengths]
+    return (
+        damped_offset(0.5 * jump * backwards, seam.half_life, reaches[0]),
+        damped_offset(-0.5 * jump, seam.half_life, reaches[1]),
+    )
+
+
+def _beyond(spline: Spline, end: float, piece: Piece) -> float:
+    first, last = spline.domain
+    return last - end if piece[1] > piece[0] else end - first
+
+
+def _ahead(spline: Spline, piece: Piece) -> float:
+    first, last = spline.domain
+    return piece[0] - first if piece[1] > piece[0] else last - piece[0]
+
+
+def _crossfade(spline: Spline, before: Piece, after: Piece, half: float) -> tuple[Offset, Offset]:
+    ways = [1.0 if b > a else -1.0 for a, b in (before, after)]
+
+    def difference(sign: float) -> Offset:
+        # along q away from the seam: the other curve's values minus this one's
+        def of(q: FloatArray) -> FloatArray:
+            rows: list[FloatArray] = []
+            for order in range(4):
+                last = spline(before[1] + ways[0] * sign * q, order) * (ways[0] * sign) ** order
+                first = spline(after[0] + ways[1] * sign * q, order) * (ways[1] * sign) ** order
+                rows.append(-sign * (first - last))
+            return np.stack(rows)
+
+        return of
+
+    return faded_offset(difference(-1.0), half), faded_offset(difference(1.0), half)
+
+
+def bridge(left: FloatArray, right: FloatArray, length: float) -> Spline:
+    """Return the curve from one state to another.
+
+    Parameters
+    ----------
+    left, right : (3, c) float
+        Value, velocity and acceleration at its start and end.
+    length : float
+        Of its domain, from 0.
+
+    Returns
+    -------
+    Spline
+        The quintic between the states, followed by a cubic with 9 knots inside.
+    """
+    k = 13
+    knots = np.concatenate([[0.0] * 3, np.linspace(0, length, k - 2), [length] * 3])
+    flat = Spline(knots, np.zeros((k, left.shape[1])))
+
+    def quintic(q: FloatArray) -> FloatArray:
+        scale = length ** np.arange(3)[:, None]
+        a, b = left * scale, right * scale
+        rise = b[0] - a[0] - a[1] - 0.5 * a[2]
+        speed, bend = b[1] - a[1] - a[2], b[2] - a[2]
+        c = np.stack(
+            [
+                a[0],
+                a[1],
+                0.5 * a[2],
+                10 * rise - 4 * speed + 0.5 * bend,
+                -15 * rise + 7 * speed - bend,
+                6 * rise - 3 * speed + 0.5 * bend,
+            ]
+        )
+        s = np.clip(q / length, 0.0, 1.0)
+        rows: list[FloatArray] = []
+        for order in range(4):
+            rows.append(np.stack([s**i for i in range(len(c))], axis=1) @ c / length**order)
+            c = np.arange(1, len(c))[:, None] * c[1:]
+        return np.stack(rows)
+
+    curve = carried(flat, quintic, at_end=False)
+    last = carried(
+        flat, lambda q: quintic(length - q) * np.array([1, -1, 1, -1.0])[:, None, None], at_end=True
+    )
+    return curve.with_controls(np.concatenate([curve.controls[:-3], last.controls[-3:]]))

@@ -1,0 +1,236 @@
+"""Pieces of a clip put one after another: what every cut, loop, paste, reversal and blend is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tempose.curves import MonotoneMap, Seam, Spline, join_maps, splice_spline
+from tempose.signals.signals import Signals
+from tempose.signals.time.origin import splice_origin
+from tempose.signals.time.signal import TimeSignal
+from tempose.typing import FloatArray
+
+Piece = tuple[float, float]
+
+_CREEP = 1e-3
+
+
+@dataclass(frozen=True)
+class Join:
+    """How two pieces meet, in frames of what is played."""
+
+    half_life: float = 3.0
+    """A jump is carried by damped offsets that halve in this many frames, half of it on either side..."""
+    insert: int = 0
+    """...or this many new frames are put between the two, and no other frame changes..."""
+    fade: float = 0.0
+    """...or over this many frames both are played and crossfaded, where the clip goes on long enough."""
+
+
+def splice(
+    signals: Signals,
+    pieces: Sequence[Piece],
+    joins: Join | Sequence[Join] | None = None,
+    *,
+    closed: bool = False,
+) -> Signals:
+    """Return pieces of a clip one after another.
+
+    Parameters
+    ----------
+    signals : Signals
+        The clip.
+    pieces : sequence of (start, stop)
+        In seconds of what is played; a stop before the start runs backwards. The last instant of a piece is
+        the first of the next one.
+    joins : Join or sequence of Join, optional
+        One for all seams, or one for each; the default carries jumps by damped offsets.
+    closed : bool, default False
+        Whether the end shall meet the start, too, so that the clip can be played round and round; inserted
+        frames stand at the end.
+
+    Returns
+    -------
+    Signals
+        C2 at the seams in curve and path; frames beyond their reach (8 half-lives) are the same.
+
+    Raises
+    ------
+    ValueError
+        If there is no piece, one is empty or leaves the clip, or the number of joins does not fit.
+
+    Notes
+    -----
+    Every clock map is cut exactly (a cubic by Hermite subdivision); where the pace differs at a seam the
+    slower one holds there, and the maps change from one beat before to one beat after.
+    """
+    pieces, joins = _checked(signals, pieces, joins, closed)
+    beats = [(a * signals.rate, b * signals.rate) for a, b in pieces]
+    beats_a_frame = signals.rate / signals.fps
+    seams = [
+        Seam(
+            j.half_life * beats_a_frame,
+            (j.insert + 1) * beats_a_frame * (j.insert > 0),
+            j.fade * beats_a_frame,
+        )
+        for j in joins
+    ]
+    retimings: list[MonotoneMap] = []
+    for retiming in signals.retimings:
+        cut, below, seams_below = _splice_map(retiming, beats, seams, closed)
+        retimings.append(cut)
+        if not below:  # all of it holds one pose: what lies below stays whole
+            return replace(signals, retimings=(*retimings, *signals.retimings[len(retimings) :]))
+        beats, seams = below, seams_below
+    return replace(_splice_ticks(signals, beats, seams, closed), retimings=tuple(retimings))
+
+
+def _checked(
+    signals: Signals, pieces: Sequence[Piece], joins: Join | Sequence[Join] | None, closed: bool
+) -> tuple[list[Piece], list[Join]]:
+    room = 1e-9 * signals.duration
+    for a, b in pieces:
+        if not (-room <= min(a, b) and max(a, b) <= signals.duration + room and abs(a - b) > room):
+            raise ValueError(
+                f"a piece must have a length and lie in 0 .. {signals.duration:.6g} s, got {a:.6g} .. {b:.6g}"
+            )
+    if not pieces:
+        raise ValueError("splicing needs one piece or more")
+    wanted = len(pieces) - (0 if closed else 1)
+    if joins is None or isinstance(joins, Join):
+        joins = [joins or Join()] * wanted
+    if len(joins) != wanted:
+        raise ValueError(f"{len(pieces)} pieces meet at {wanted} seams, got {len(joins)} joins")
+    return _merged([(float(a), float(b)) for a, b in pieces], list(joins), room)
+
+
+def _merged(pieces: list[Piece], joins: list[Join], room: float) -> tuple[list[Piece], list[Join]]:
+    # pieces that go straight on are one: nothing is cut, nothing changes
+    out, kept = [pieces[0]], list[Join]()
+    for i, (a, b) in enumerate(pieces[1:]):
+        before = out[-1]
+        goes_on = abs(before[1] - a) <= room and (before[1] > before[0]) == (b > a)
+        if goes_on and not joins[i].insert:
+            out[-1] = (before[0], b)
+        else:
+            kept.append(joins[i])
+            out.append((a, b))
+    return out, kept + joins[len(pieces) - 1 :]
+
+
+def _splice_map(
+    clock: MonotoneMap, pieces: list[Piece], seams: list[Seam], closed: bool
+) -> tuple[MonotoneMap, list[Piece], list[Seam]]:
+    # what the clock becomes; the pieces and seams that the clock below it gets
+    parts = [_cut(clock, *piece) for piece in pieces]
+    below = [(float(clock(a)), float(clock(b))) for a, b in pieces]
+    if all(a == b == below[0][0] for a, b in below):
+        return join_maps(parts), [], []
+    parts, below, seams = _without_stills(parts, below, seams)
+    laid: list[MonotoneMap] = []
+    seams_below: list[Seam] = []
+    for i, part in enumerate(parts):
+        laid.append(part)
+        if i < len(seams):
+            seam, gap = _below(seams[i], part, parts[(i + 1) % len(parts)])
+            seams_below.append(seam)
+            laid += [gap] if gap is not None else []
+    joined = join_maps(laid)
+    return joined.shifted(-joined.keys[0], -joined.values[0]), below, seams_below
+
+
+def _without_stills(
+    parts: list[MonotoneMap], below: list[Piece], seams: list[Seam]
+) -> tuple[list[MonotoneMap], list[Piece], list[Seam]]:
+    # a piece in which the clock stands has no length below. Where the clip goes on from that very place it
+    # becomes part of its neighbour; else it creeps, for a curve cannot stop
+    parts, below, seams = list(parts), list(below), list(seams)
+    i = 0
+    while i < len(parts):
+        a, b = below[i]
+        after = i < min(len(seams), len(parts) - 1) and not seams[i].gap and below[i + 1][0] == a
+        before = i > 0 and not seams[i - 1].gap and below[i - 1][1] == a
+        if a != b or not (after or before):
+            if a == b:
+                below[i], parts[i] = _creeping(a, parts[i])
+            i += 1
+            continue
+        j = i if after else i - 1
+        parts[j : j + 2] = [join_maps(parts[j : j + 2])]
+        below[j : j + 2] = [(below[j][0], below[j + 1][1])]
+        del seams[j]
+        i = max(j, 0)
+    return parts, below, seams
+
+
+def _creeping(at: float, part: MonotoneMap) -> tuple[Piece, MonotoneMap]:
+    length = part.keys[-1] - part.keys[0]
+    stop = at + _CREEP if at < 1 else at - _CREEP
+    rise = np.array([0.0, _CREEP])
+    ends = np.array([part.keys[0], part.keys[-1]])
+    return (at, stop), MonotoneMap(ends, rise, np.full(2, _CREEP / length))
+
+
+def _cut(clock: MonotoneMap, a: float, b: float) -> MonotoneMap:
+    low, high = min(a, b), max(a, b)
+    part = clock.slice(low, high).with_keys(np.array([low + 1, high - 1]))
+    return part if a < b else part.reversed()
+
+
+def _below(seam: Seam, left: MonotoneMap, right: MonotoneMap) -> tuple[Seam, MonotoneMap | None]:
+    # what a length on this clock is on the one below: by the paces beside the seam
+    pace = 0.5 * (_pace(left, left.keys[-1], seam) + _pace(right, right.keys[0], seam))
+    if seam.gap <= 0:
+        return Seam(seam.half_life * pace, 0.0, seam.fade * pace), None
+    slopes = np.array([left.slopes[-1], right.slopes[0]])
+    length = max(seam.gap * slopes.mean(), 0.1 * seam.gap * pace)
+    gap = MonotoneMap(np.array([0.0, seam.gap]), np.array([0.0, length]), slopes)
+    return Seam(seam.half_life * pace, length, 0.0), gap.with_keys(np.arange(1.0, seam.gap))
+
+
+def _pace(part: MonotoneMap, at: float, seam: Seam) -> float:
+    reach = np.clip([at - seam.half_life, at + seam.half_life], *part.domain)
+    whole = (part.values[-1] - part.values[0]) / (part.keys[-1] - part.keys[0])
+    near = (part(reach[1]) - part(reach[0])) / (reach[1] - reach[0])
+    return float(max(near, 0.1 * whole)) or 1.0
+
+
+def _splice_ticks(signals: Signals, pieces: list[Piece], seams: list[Seam], closed: bool) -> Signals:
+    pace, along, seams_along = _splice_map(signals.time.pace, pieces, seams, closed)
+    time = TimeSignal(
+        splice_spline(signals.time.curve, along, seams_along, closed=closed),
+        splice_spline(signals.time.unedited, along, seams_along, closed=closed),
+        pace,
+    )
+    path = None if signals.path is None else splice_spline(signals.path, pieces, seams, closed=closed)
+    placement = None
+    if signals.placement is not None:
+        placement = _splice_placement(signals.placement, pieces, seams, closed)
+    origin = splice_origin(signals.origin, pieces, [seam.gap for seam in seams])
+    return replace(signals, time=time, path=path, placement=placement, origin=origin)
+
+
+def _splice_placement(placement: Spline, pieces: list[Piece], seams: list[Seam], closed: bool) -> Spline:
+    return splice_spline(placement, pieces, seams, closed=closed)
+
+
+def frames_as_pieces(signals: Signals, pieces: Sequence[tuple[float, float]]) -> list[Piece]:
+    """Return pieces given in frames as pieces in seconds.
+
+    Parameters
+    ----------
+    signals : Signals
+        The clip.
+    pieces : sequence of (first, last)
+        Frames of what is played, from 0.
+
+    Returns
+    -------
+    list of (float, float)
+        Seconds.
+    """
+    frames: FloatArray = np.asarray(pieces, dtype=np.float64) / signals.fps
+    return [(float(a), float(b)) for a, b in frames]
