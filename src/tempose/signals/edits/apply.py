@@ -86,7 +86,7 @@ def apply_edits(
     folder : path-like, optional
         Where file names count from; the working folder by default.
     notes : list of str, optional
-        Gets what a person should know about what was done, such as the share of a motion that examples cannot show.
+        Gets what a person should know of what was done: the share of a motion that examples cannot show.
 
     Returns
     -------

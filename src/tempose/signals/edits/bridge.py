@@ -130,7 +130,7 @@ def _bridged_path(signals: Signals, time: TimeSignal, gap: _Gap) -> Spline | Non
     if signals.path is None:
         return None
     offsets = [
-        signals.path(t) - signals.pose(signals.time.before_edits(np.float64(t)), _captured(signals, t))
+        signals.path(t) - signals.pose(signals.time.before_edits(np.array(t)), _captured(signals, t))
         for t in (gap.a, gap.b)
     ]
     captured = _captured(signals, gap.a), _captured(signals, gap.b)
@@ -146,13 +146,14 @@ def _bridged_path(signals: Signals, time: TimeSignal, gap: _Gap) -> Spline | Non
 
 
 def _captured(signals: Signals, tick: float) -> FloatArray:
-    return np.float64(tick) if signals.origin is None else signals.origin(np.float64(tick))
+    at = np.array(tick)
+    return at if signals.origin is None else signals.origin(at)
 
 
 def _bridged_spline(
     left: Spline, right: Spline, gap: _Gap, values: Callable[[FloatArray, FloatArray], FloatArray]
 ) -> Spline:
-    """Bridge a spline over ticks by values a tick apart; they are asked with ticks and how far along they are."""
+    """Bridge splines over ticks by values a tick apart, asked with ticks and how far along they are."""
     t = np.linspace(gap.a, gap.end, max(math.ceil(gap.end - gap.a - 1e-9), 1) + 1)
     s = ((t - gap.a) / (gap.end - gap.a))[1:-1, None]
     inner = values(t[1:-1], s * s * (3 - 2 * s))
@@ -183,5 +184,5 @@ def _bridged_origin(origin: Origin | None, gap: _Gap) -> Origin:
     return Origin(
         np.concatenate([old.starts[head], [gap.a, gap.end], old.starts[tail] + (gap.end - gap.b)]),
         np.concatenate([old.sources[head], old(at), old.sources[tail]]),
-        np.concatenate([old.directions[head], [0.0, direction], old.directions[tail]]),
+        np.concatenate([old.directions[head], np.array([0.0, direction]), old.directions[tail]]),
     )

@@ -90,7 +90,7 @@ def insert_control(signals: Signals, at: float) -> Signals:
         If there is no such frame.
     """
     time = signals.time
-    u = float(time.pace(signals.ticks(np.float64(frame_seconds(signals, at, "at")))))
+    u = float(time.pace(signals.ticks(np.array(frame_seconds(signals, at, "at")))))
     at_u = np.array([free_place(time.curve, u)])
     curve, unedited = insert_knots(time.curve, at_u), insert_knots(time.unedited, at_u)
     return replace(signals, time=replace(time, curve=curve, unedited=unedited))

@@ -1,4 +1,4 @@
-"""What stands under the keys of an edit list, checked by kind; whether it fits the clip, each edit says itself."""
+"""Values in an edit list, checked by kind; whether they fit the clip, each edit says itself."""
 
 from __future__ import annotations
 

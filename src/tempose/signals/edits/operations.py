@@ -31,7 +31,7 @@ class Operation:
     optional: Mapping[str, Check] = field(default_factory=dict[str, Check])
     """Keys that may be there."""
     reads_files: bool = False
-    """Whether the function takes `folder`, where file names count from, and `notes`, a list of str to add to."""
+    """Whether the function takes `folder`, where file names count from, and a list `notes` to add to."""
 
     def arguments(self, entry: Mapping[str, Any]) -> dict[str, Any]:
         """Check an entry and return the arguments of the function.

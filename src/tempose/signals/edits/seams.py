@@ -127,8 +127,8 @@ def join_maps(before: MonotoneMap, a: float, length: float, after: MonotoneMap, 
     Returns
     -------
     MonotoneMap
-        Its speed has no jump. The piece between rises by its length times the mean of both speeds, and never by
-        less than a quarter of what the clock rises on average: where it stands still it would else stay still.
+        Its speed has no jump. The piece between rises by its length times the mean of both speeds, but at
+        least by a quarter of what the clock rises on average: where it stands still it would else stay still.
     """
     slopes = np.array([before(a, derivative=1), after(b, derivative=1)])
     keys, values = after.keys, after.values
