@@ -13,19 +13,24 @@ from tempose._version import __version__
 if TYPE_CHECKING:
     from tempose import (
         clips,
+        curves,
         datasets,
         formats,
         geometry,
         kinematics,
         linalg,
         metrics,
+        models,
         render,
         rotations,
         samples,
+        shape_spaces,
+        signals,
         transfer,
     )
     from tempose.clips import MarkerClip, Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
     from tempose.formats import load, save
+    from tempose.signals import SignalModel
     from tempose.transfer import MotionTransfer
 
 _HOMES = {
@@ -33,6 +38,7 @@ _HOMES = {
     "Mesh": "tempose.clips",
     "MeshClip": "tempose.clips",
     "MotionTransfer": "tempose.transfer",
+    "SignalModel": "tempose.signals",
     "Skeleton": "tempose.clips",
     "SkeletonClip": "tempose.clips",
     "SkinnedMesh": "tempose.clips",
@@ -41,15 +47,19 @@ _HOMES = {
 }
 _PACKAGES = (
     "clips",
+    "curves",
     "datasets",
     "formats",
     "geometry",
     "kinematics",
     "linalg",
     "metrics",
+    "models",
     "render",
     "rotations",
     "samples",
+    "shape_spaces",
+    "signals",
     "transfer",
 )
 
@@ -58,11 +68,13 @@ __all__ = [
     "Mesh",
     "MeshClip",
     "MotionTransfer",
+    "SignalModel",
     "Skeleton",
     "SkeletonClip",
     "SkinnedMesh",
     "__version__",
     "clips",
+    "curves",
     "datasets",
     "formats",
     "geometry",
@@ -70,10 +82,13 @@ __all__ = [
     "linalg",
     "load",
     "metrics",
+    "models",
     "render",
     "rotations",
     "samples",
     "save",
+    "shape_spaces",
+    "signals",
     "transfer",
 ]
 

@@ -8,6 +8,7 @@ References
    signals for time, pose and shape", Computer Graphics Forum 31, 2012.
 """
 
+from tempose.signals.model import SignalModel
 from tempose.signals.signals import Signals
 
-__all__ = ["Signals"]
+__all__ = ["SignalModel", "Signals"]

@@ -1,0 +1,5 @@
+"""The container of saved models: one ``.tempose`` file, arrays under a JSON header, no pickle."""
+
+from tempose.models.container import FORMAT_VERSION, load_model, save_model
+
+__all__ = ["FORMAT_VERSION", "load_model", "save_model"]

@@ -1,0 +1,118 @@
+"""Frames out of signals: one, many, or more than fit into memory."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from tempose._validate import as_floats
+from tempose.signals.placement import placed
+from tempose.signals.signals import Signals
+from tempose.typing import FloatArray
+
+BLOCK_VALUES = 2_000_000
+"""Numbers of one block: 8 MB of vertices in single precision."""
+
+
+def sample_blocks(
+    signals: Signals, times: FloatArray, dtype: Any = np.float32
+) -> Iterator[tuple[slice, FloatArray]]:
+    """Evaluate signals a block of times after another.
+
+    Parameters
+    ----------
+    signals : Signals
+        What to play.
+    times : (K,) float
+        Seconds.
+    dtype : dtype, default float32
+        Of the vertices.
+
+    Yields
+    ------
+    where : slice
+        Which of the times.
+    vertices : (k, n, 3) ndarray
+        Positions there, metres.
+    """
+    step = max(1, BLOCK_VALUES // max(signals.shape.space.dimension, 1))
+    for start in range(0, len(times), step):
+        where = slice(start, min(start + step, len(times)))
+        yield where, evaluate(signals, times[where], dtype)
+
+
+def evaluate(signals: Signals, times: FloatArray, dtype: Any = np.float32) -> FloatArray:
+    """Evaluate signals at a few times at once.
+
+    Parameters
+    ----------
+    signals : Signals
+        What to play.
+    times : (...) float
+        Seconds.
+    dtype : dtype, default float32
+        Of the vertices.
+
+    Returns
+    -------
+    (..., n, 3) ndarray
+        Positions, metres.
+    """
+    V = signals.shape.vertices(signals.coordinates(times))
+    return placed(V, signals.placement, signals.ticks(times)).astype(dtype, copy=False)
+
+
+def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np.float32) -> FloatArray:
+    """Evaluate signals at any number of times.
+
+    Parameters
+    ----------
+    signals : Signals
+        What to play.
+    times : (...) float
+        Seconds.
+    out : (..., n, 3) array, optional
+        Where to write; a memory map holds what memory does not.
+    dtype : dtype, default float32
+        Of the result, where `out` is not given.
+
+    Returns
+    -------
+    (..., n, 3) ndarray
+        `out`, or a new array.
+
+    Raises
+    ------
+    ValueError
+        If a time is not finite, `out` has another shape, or a new array would not fit into memory.
+    """
+    times = np.asarray(times, dtype=np.float64)
+    shape = (*times.shape, signals.shape.space.n_vertices, 3)
+    flat = as_floats(times.reshape(-1), "times", ("K",))
+    if out is None:
+        _check_room(shape, dtype)
+        rows = np.zeros((len(flat), *shape[-2:]), dtype)
+    elif out.shape != shape or len(shape) != 3:
+        raise ValueError(f"out must have shape (K, {shape[-2]}, 3) for K times, got {out.shape}")
+    else:
+        rows = out
+    for where, vertices in sample_blocks(signals, flat, rows.dtype):
+        rows[where] = vertices
+    return rows.reshape(shape) if out is None else out
+
+
+def _check_room(shape: tuple[int, ...], dtype: Any) -> None:
+    wanted = math.prod(shape) * np.dtype(dtype).itemsize
+    try:
+        free = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return
+    if wanted > free:
+        raise ValueError(
+            f"{math.prod(shape[:-2])} frames of {shape[-2]} vertices take {wanted / 1e9:.0f} GB, more "
+            "than this machine has; take them in blocks (sample_blocks), or give a memory map as out"
+        )
