@@ -46,7 +46,7 @@ def text_size(text: str, height: int) -> tuple[int, int]:
     (int, int)
         Width and height, pixels.
     """
-    box = _font(height).getbbox(text)
+    box = font_of(height).getbbox(text)
     return int(np.ceil(box[2])), int(np.ceil(height * 1.25))
 
 
@@ -78,9 +78,21 @@ def draw_text(
     PIL = pillow()
     image = PIL.Image.fromarray(np.ascontiguousarray(picture))
     ink = tuple(int(round(255 * c)) for c in color)
-    PIL.ImageDraw.Draw(image).text(at, text, fill=ink, font=_font(height), anchor=anchor)
+    PIL.ImageDraw.Draw(image).text(at, text, fill=ink, font=font_of(height), anchor=anchor)
     picture[:] = np.asarray(image)
 
 
-def _font(height: int) -> Any:
+def font_of(height: int) -> Any:
+    """Return the font of a size.
+
+    Parameters
+    ----------
+    height : int
+        Font size, pixels.
+
+    Returns
+    -------
+    ImageFont
+        Of Pillow.
+    """
     return pillow().ImageFont.load_default(size=height)
