@@ -12,6 +12,7 @@ from tempose._version import __version__
 from tempose.clips import MeshClip
 from tempose.metrics import compare
 from tempose.signals.fitting import FittedClip
+from tempose.signals.frame_errors import frame_errors, scree
 from tempose.signals.options import FitOptions
 from tempose.signals.sampling import sample
 from tempose.signals.signals import Signals
@@ -38,7 +39,8 @@ def fit_report(
     -------
     dict
         ``errors`` of what is played, ``paper`` of the literal ``h(g(f(t)))``, ``budget`` of h, g and f in rms
-        percent of the diagonal, ``seconds``, ``warnings``, and the numbers k, l, m, d chosen.
+        percent of the diagonal, ``frame_errors`` and ``scree`` for pictures, ``seconds``, ``warnings``, and
+        the numbers k, l, m, d chosen.
     """
     signals = fitted.signals
     progress(5, 5, "measuring errors")
@@ -55,6 +57,8 @@ def fit_report(
         "errors": clip_errors(clip, signals, fitted.diagonal),
         "paper": clip_errors(clip, replace(signals, path=None), fitted.diagonal),
         "budget": error_budget(fitted),
+        "frame_errors": frame_errors(clip, fitted),
+        "scree": scree(fitted.shape),
         "warnings": list(fitted.warnings),
     }
     report["seconds"] = {**fitted.seconds, "total": sum(fitted.seconds.values())}

@@ -1,0 +1,63 @@
+"""The error of every frame, signal by signal, and what h would leave out with fewer or more modes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tempose.clips import MeshClip
+from tempose.signals.fitting import FittedClip
+from tempose.signals.sampling import sample
+from tempose.signals.shape.fit import FittedShape
+from tempose.typing import FloatArray
+
+
+def frame_errors(clip: MeshClip, fitted: FittedClip) -> dict[str, list[float]]:
+    """Measure the error of every frame.
+
+    Parameters
+    ----------
+    clip : MeshClip
+        T frames.
+    fitted : FittedClip
+        Its signals.
+
+    Returns
+    -------
+    dict of str to list of T floats
+        Rms percent of the diagonal: ``h`` of the shape signal alone, ``hg`` of ``h(g(P))``, ``hgf`` of
+        ``h(g(f(t)))``, and ``played``, measured at the vertices. The mean square of a row over the frames
+        is the square of its entry in the budget.
+    """
+    shape, signals, T = fitted.shape, fitted.signals, clip.n_frames
+    ticks = np.arange(T, dtype=np.float64)
+
+    def with_pose(P: FloatArray) -> FloatArray:
+        off = shape.X - signals.pose(P, ticks)
+        return shape.left_out + np.square(off if shape.turn is None else off @ shape.turn).sum(axis=1)
+
+    squares = {
+        "h": shape.left_out,
+        "hg": with_pose(fitted.positions),
+        "hgf": with_pose(signals.time(ticks)),
+    }
+    rows = {name: shape.percent(T * value).tolist() for name, value in squares.items()}
+    played = sample(signals, ticks / clip.fps, dtype=np.float64)
+    off = np.square(played - np.asarray(clip.vertices, dtype=np.float64)).sum(axis=2).mean(axis=1)
+    return {**rows, "played": (100 / fitted.diagonal * np.sqrt(off)).tolist()}
+
+
+def scree(shape: FittedShape) -> list[float]:
+    """Return what the shape signal leaves out, for every number of modes.
+
+    Parameters
+    ----------
+    shape : FittedShape
+        A fitted shape signal.
+
+    Returns
+    -------
+    list of r + 1 floats
+        Rms percent of the diagonal with 0, 1, 2... principal components.
+    """
+    s2 = np.square(shape.spectrum)
+    return [*shape.percent(np.cumsum(s2[::-1])[::-1]).tolist(), 0.0]
