@@ -62,3 +62,35 @@ def controls_of(pieces: PPoly, knots: FloatArray) -> FloatArray:
     p, d1, d2, d3 = (pieces(mid, nu=i) for i in range(4))
     s1, s2, s3 = (a + b + c) / 3, (a * b + b * c + c * a) / 3, a * b * c
     return p + s1[:, None] * d1 + s2[:, None] * d2 / 2 + s3[:, None] * d3 / 6
+
+
+def periodic_spline(u: FloatArray, points: FloatArray, period: float) -> Spline:
+    """Return one period of the periodic cubic spline through points.
+
+    Parameters
+    ----------
+    u : (n,) float
+        Ascending parameters within one period, n >= 2.
+    points : (n, c) float
+        Where the curve is at those parameters.
+    period : float
+        More than ``u[-1] - u[0]``.
+
+    Returns
+    -------
+    Spline
+        Over ``u[0] .. u[0] + period``; value, first and second derivative are the same at both ends.
+
+    Raises
+    ------
+    ValueError
+        If the parameters do not ascend or do not fit into one period.
+    """
+    u = as_floats(u, "u", ("n",))
+    points = as_floats(points, "points", (len(u), "c"))
+    if len(u) < 2 or (np.diff(u) <= 0).any() or not period > u[-1] - u[0]:
+        raise ValueError(f"u must hold 2 or more ascending parameters within a period of {period:.6g}")
+    closed = np.concatenate([u, [u[0] + period]])
+    pieces = CubicSpline(closed, np.concatenate([points, points[:1]]), bc_type="periodic")
+    knots = np.concatenate([[closed[0]] * 3, closed, [closed[-1]] * 3])
+    return Spline(knots, controls_of(pieces, knots))
