@@ -1,0 +1,106 @@
+"""How good a layout of frames is: what the signals through all of its frames do between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose.curves import Spline, interpolating_spline, monotone_map
+from tempose.signals.pose.crossings import find_crossings
+from tempose.signals.pose.sites import order_sites
+from tempose.signals.pose.transitions import PlaceMap, Transitions, find_bad_transitions
+from tempose.typing import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """A layout and its transitions."""
+
+    name: str
+    """How it was made."""
+    positions: FloatArray
+    """(n, 2) places of the frames."""
+    transitions: Transitions
+    """Of the signals that interpolate every frame."""
+    aspect: float
+    """Smaller over larger spread: near 0 the layout is a line along time, and says nothing."""
+    crossings: int
+    """How often the way from frame to frame crosses itself."""
+    stress: float
+    """How far distances in the plane are from those of the poses, as in `LayoutResult`."""
+
+    @property
+    def bad(self) -> int:
+        """Number of bad transitions."""
+        return int(self.transitions.bad.sum())
+
+
+def judge_layout(
+    name: str, P: FloatArray, X: FloatArray, stress: float, path: Spline, middles: FloatArray | None = None
+) -> Judgement:
+    """Judge a layout.
+
+    Parameters
+    ----------
+    name : str
+        How it was made.
+    P : (n, 2) float
+        Places of the frames.
+    X : (n, m) float
+        Their shape coordinates.
+    stress : float
+        Its stress.
+    path : Spline
+        The smooth motion through `X`.
+    middles : (e,) float, optional
+        Ticks where the pose signal is fitted to the path as well.
+
+    Returns
+    -------
+    Judgement
+        With the transitions of the interpolating signals.
+    """
+    curve = curve_through(P)
+    places, values = P, X
+    if middles is not None and len(middles):
+        places, values = np.concatenate([P, curve(middles)]), np.concatenate([X, path(middles)])
+    transitions = find_bad_transitions(order_sites(places, values).signal(), curve, X, path=path)
+    return Judgement(name, P, transitions, aspect_ratio(P), len(find_crossings(P)), stress)
+
+
+def aspect_ratio(P: FloatArray) -> float:
+    """Return the smaller over the larger spread of places.
+
+    Parameters
+    ----------
+    P : (n, 2) float
+        Places.
+
+    Returns
+    -------
+    float
+        1 for a disc, 0 for a line or a point.
+    """
+    spread = np.linalg.svd(P - P.mean(axis=0), compute_uv=False)
+    return float(spread[1] / spread[0]) if len(spread) > 1 and spread[0] > 0 else 0.0
+
+
+def curve_through(P: FloatArray) -> PlaceMap:
+    """Return the time signal through all places: k = n + 2 of the paper.
+
+    Parameters
+    ----------
+    P : (n, 2) float
+        Places of frames, n >= 2.
+
+    Returns
+    -------
+    callable
+        Ticks to places: a natural cubic spline over centripetal parameters, with a monotone pace.
+    """
+    gaps = np.sqrt(np.linalg.norm(np.diff(P, axis=0), axis=1))
+    floor = 1e-3 * gaps.mean() if gaps.any() else 1.0
+    u = np.concatenate([[0.0], np.cumsum(np.maximum(gaps, floor))])
+    curve, pace = interpolating_spline(u, P), monotone_map(np.arange(len(P), dtype=np.float64), u)
+    return lambda ticks: curve(pace(ticks))
