@@ -1,0 +1,94 @@
+"""From rotation and stretch of every face to the right-hand side of the Poisson equation."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+
+from tempose.linalg.lanes import alike, item, load4, scaled, store
+from tempose.shape_spaces.gradient.lanes import floor, polynomial, root, transposed
+from tempose.shape_spaces.gradient.polynomials import COSINE, SINE
+
+_PI_LOW = 1.2246467991473532e-16  # pi less what a double holds of it
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _quaternion(x: Any, y: Any, z: Any) -> Any:
+    """Turn rotation vectors of any length into unit quaternions, up to their sign."""
+    angle = root(x * x + y * y + z * z + alike(x, 1e-300))
+    turns = floor(scaled(0.5 / math.pi, angle) + alike(x, 0.5))
+    # half the angle less half turns: the quaternion only changes its sign
+    r = scaled(0.5, angle) - scaled(math.pi, turns) - scaled(_PI_LOW, turns)
+    u = r * r
+    k = polynomial(SINE, u) * r / angle
+    return polynomial(COSINE, u), k * x, k * y, k * z
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _turn(q: Any, a: Any, b: Any, c: Any) -> Any:
+    w, x, y, z = q
+    tx, ty, tz = y * c - z * b, z * a - x * c, x * b - y * a
+    tx, ty, tz = tx + tx, ty + ty, tz + tz
+    return a + w * tx + (y * tz - z * ty), b + w * ty + (z * tx - x * tz), c + w * tz + (x * ty - y * tx)
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _in_frames(frames: Any, m: Any, f: Any, v: Any) -> Any:
+    a, b, c = v
+    return transposed(
+        load4(frames, f) * a + load4(frames, 3 * m + f) * b + load4(frames, 6 * m + f) * c,
+        load4(frames, m + f) * a + load4(frames, 4 * m + f) * b + load4(frames, 7 * m + f) * c,
+        load4(frames, 2 * m + f) * a + load4(frames, 5 * m + f) * b + load4(frames, 8 * m + f) * c,
+    )
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _pulled(z: Any, m: Any, f: Any, k: Any, g: Any, h: Any) -> Any:
+    """Stretch a vector (g, h) in the plane at rest."""
+    one, half = alike(k, 1.0), scaled(math.sqrt(0.5), k)
+    sxx, syy = one + k * load4(z, 3 * m + f), one + k * load4(z, 4 * m + f)
+    sxy = half * load4(z, 6 * m + f)
+    sxz, syz = half * load4(z, 7 * m + f), half * load4(z, 8 * m + f)
+    return sxx * g + sxy * h, sxy * g + syy * h, sxz * g + syz * h
+
+
+@numba.njit(cache=True, nogil=True)
+def decode_faces(z: Any, frames: Any, weigh: Any, pull: Any, rows: Any, at: Any, wide: Any, X: Any) -> None:
+    """Add the divergence of the deformation gradients of all faces to a right-hand side.
+
+    Parameters
+    ----------
+    z : (9 m + 3,) ndarray
+        Coordinates of the faces, and at least three more numbers.
+    frames : (9 m + 3,) ndarray
+        Reference frames, and three more numbers.
+    weigh : (m + 3,) ndarray
+        Inverse of the weight of each face, and three more numbers.
+    pull : (4 m + 3,) ndarray
+        What the second and third corner of each face get at rest, in its frame, and three more numbers.
+    rows : (3 m,) int ndarray
+        Row of each corner in X.
+    at, wide : int
+        First of three columns, and how many columns there are.
+    X : (wide (n + 1),) ndarray
+        Added to.
+    """
+    m = len(weigh) - 3
+    for f in range(0, m, 4):
+        k = load4(weigh, f)
+        q = _quaternion(k * load4(z, f), k * load4(z, m + f), k * load4(z, 2 * m + f))
+        first = _pulled(z, m, f, k, load4(pull, f), load4(pull, m + f))
+        second = _pulled(z, m, f, k, load4(pull, 2 * m + f), load4(pull, 3 * m + f))
+        U = _in_frames(frames, m, f, _turn(q, first[0], first[1], first[2]))
+        W = _in_frames(frames, m, f, _turn(q, second[0], second[1], second[2]))
+        for i in range(min(4, m - f)):
+            a = wide * item(rows, f + i) + at
+            b = wide * item(rows, m + f + i) + at
+            c = wide * item(rows, 2 * m + f + i) + at
+            u, w = U[i], W[i]
+            # the fourth number is zero and changes nothing, in whichever column it falls
+            store(X, a, load4(X, a) - (u + w))
+            store(X, b, load4(X, b) + u)
+            store(X, c, load4(X, c) + w)

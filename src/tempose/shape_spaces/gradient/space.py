@@ -1,0 +1,271 @@
+"""Deformation gradients as a shape space."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from tempose._validate import as_floats, as_indices
+from tempose.rotations import polar_rotation
+from tempose.shape_spaces.gradient.branches import follow_path
+from tempose.shape_spaces.gradient.decode_kernels import decode_faces
+from tempose.shape_spaces.gradient.encode_kernels import encode_faces, turn_faces
+from tempose.shape_spaces.gradient.poisson import MeshPoisson, padded
+from tempose.shape_spaces.gradient.rest_faces import RestFaces, rest_faces
+from tempose.typing import FloatArray, IntArray
+
+TOGETHER = 16
+"""Frames solved at once: their right-hand sides fill the widest block of the solver."""
+
+
+class GradientSpace:
+    """Rotation and stretch of every face against the rest, and the centre of every connected piece.
+
+    d = 9 m + 3 for a mesh of one piece: 3 numbers of rotation and 6 of stretch a face, 3 of place.
+
+    Parameters
+    ----------
+    rest : (n, 3) float
+        Rest vertices, metres.
+    faces : (m, 3) int
+        Faces; some may be degenerate.
+    references : (m, 3, 3) float, optional
+        Rotation of every face against the rest from which its rotations are counted; none if not given.
+
+    Raises
+    ------
+    ValueError
+        If there are no faces, none has an area, or an index or a shape is wrong.
+
+    Notes
+    -----
+    Section 5 of [1]_ after [2]_: the deformation gradient T of a face, its normal scaled by the root of the
+    area, is split into ``T = M exp(w) S``, M the reference rotation, S symmetric. What differs from [1]_:
+
+    - Rotations are relative to M, the mean of the face over the clip, so that angles stay small.
+    - w and ``S - 1`` are given in axes of the face at rest (first axis along its longest edge, third axis the
+      normal), which changes no distance; then S has two entries that are always zero and one, the stretch of
+      the normal, that follows from the others and is not read by `decode`.
+    - Everything is multiplied by the root of the face's share in the area, entries beside the diagonal by
+      sqrt 2, places divided by the rms radius of the mesh: the Euclidean distance of two vectors does not
+      depend on unit, tessellation or choice of axes, and zero is the rest in its mean orientation.
+    - A mesh of c pieces (a vertex without faces is one) has c places: d = 9 m + 3 c.
+
+    Layout of a vector: 9 rows of m numbers (w; xx, yy, zz, xy, xz, yz), then c places.
+    A triangle has no mirror image that a rotation does not give too: no determinant is ever negative.
+
+    References
+    ----------
+    .. [1] Cashman and Hormann, "A continuous, editable representation for deforming mesh sequences with
+       separate signals for time, pose and shape", Computer Graphics Forum 31(2), 2012.
+    .. [2] Sumner and Popovic, "Deformation transfer for triangle meshes", SIGGRAPH 2004.
+    """
+
+    name: ClassVar[str] = "gradient"
+
+    def __init__(self, rest: FloatArray, faces: IntArray, references: FloatArray | None = None) -> None:
+        rest = as_floats(rest, "rest", ("n", 3))
+        faces = as_indices(faces, "faces", ("m", 3), limit=len(rest))
+        if len(faces) == 0:
+            raise ValueError("faces must hold at least one face, got none")
+        self.rest, self.faces, self.n_vertices = rest, faces, len(rest)
+        described = rest_faces(rest, faces)
+        if references is None:
+            references = np.broadcast_to(np.eye(3), (len(faces), 3, 3))
+        self.references = as_floats(references, "references", (len(faces), 3, 3))
+        frames = np.einsum("mij,ajm->aim", self.references, described.frames)
+        self._frames = padded(frames)
+        self._corners, self._inverse = 3 * described.corners.ravel(), described.inverse.ravel()
+        self._scale = np.sqrt(described.shares)
+        self._weigh = padded(1 / self._scale)
+        self._poisson = MeshPoisson(rest, faces, described)
+        self.flat = described.flat
+        self._set_places(described)
+
+    def _set_places(self, described: RestFaces) -> None:
+        poisson = self._poisson
+        self._centres = np.zeros((poisson.n_components, 3))
+        poisson.centres(self.rest.ravel(), self._centres)
+        shares = np.bincount(poisson.component[described.corners[0]], self._scale**2, poisson.n_components)
+        # a vertex without faces counts as one of n
+        shares = np.maximum(shares, 1 / self.n_vertices)
+        shares /= shares.sum()
+        weights = poisson.centre_weights * shares[poisson.component]
+        away = self.rest - weights @ self.rest
+        radius = np.sqrt(weights @ (away**2).sum(axis=1))
+        self._place_scale = np.sqrt(shares)[:, None] / radius
+
+    @property
+    def dimension(self) -> int:
+        """Length d of a vector."""
+        return 9 * len(self.faces) + 3 * self._poisson.n_components
+
+    def encode(self, V: FloatArray) -> FloatArray:
+        """Measure rotation and stretch of every face; rotations by at most half a turn.
+
+        Parameters
+        ----------
+        V : (..., n, 3) float
+            Vertex positions, metres.
+
+        Returns
+        -------
+        (..., d) ndarray of float64
+            Coordinates.
+
+        Raises
+        ------
+        ValueError
+            If the shape is wrong or a value is not finite.
+        """
+        V = np.asarray(V)
+        frames = V.reshape(-1, *V.shape[-2:])
+        z = np.zeros((len(frames), self.dimension))
+        for t in range(len(frames)):
+            self._encode_frame(frames[t], z[t])
+        return z.reshape(*V.shape[:-2], self.dimension)
+
+    def _encode_frame(self, V: FloatArray, z: FloatArray) -> None:
+        V = as_floats(V, "V", (self.n_vertices, 3)).ravel()
+        places = self._places(z)
+        encode_faces(V, self._corners, self._inverse, self._frames, self._scale, z)
+        self._poisson.centres(V, places)
+        places -= self._centres
+        places *= self._place_scale
+
+    def encode_path(self, V: FloatArray, after: FloatArray | None = None) -> FloatArray:
+        """Measure the frames of a clip; rotations go on from frame to frame, past half a turn too.
+
+        Parameters
+        ----------
+        V : (T, n, 3) float
+            Frames in the order of time.
+        after : (d,) float, optional
+            Coordinates of the frame before the first, from which to go on. If not given, the frame nearest to
+            the reference is measured as `encode` does and the others go on from it in both directions.
+
+        Returns
+        -------
+        (T, d) ndarray of float64
+            Coordinates.
+
+        Raises
+        ------
+        ValueError
+            If the shape is wrong or a value is not finite.
+        """
+        z = self.encode(V)
+        if z.ndim != 2:
+            raise ValueError(f"V must have shape (T, {self.n_vertices}, 3), got {np.shape(V)}")
+        m = len(self.faces)
+        w = z[:, : 3 * m].reshape(-1, 3, m)
+        if after is not None:
+            after = as_floats(after, "after", (self.dimension,))[: 3 * m].reshape(3, m)
+        follow_path(w, self._weigh, after)
+        return z
+
+    def decode(self, z: FloatArray) -> FloatArray:
+        """Find the mesh whose faces come nearest to the wanted rotations and stretches.
+
+        Parameters
+        ----------
+        z : (..., d) float
+            Coordinates.
+
+        Returns
+        -------
+        (..., n, 3) ndarray of float64
+            Vertex positions, metres.
+
+        Raises
+        ------
+        ValueError
+            If the shape is wrong or a value is not finite.
+        """
+        z = np.asarray(z, dtype=np.float64)
+        rows = np.ascontiguousarray(as_floats(z.reshape(-1, z.shape[-1]), "z", ("T", self.dimension)))
+        out = np.zeros((len(rows), self.n_vertices, 3))
+        for t in range(0, len(rows), TOGETHER):
+            self._decode_frames(rows[t : t + TOGETHER], out[t : t + TOGETHER])
+        return out.reshape(*z.shape[:-1], self.n_vertices, 3)
+
+    def _decode_frames(self, z: FloatArray, out: FloatArray) -> None:
+        poisson = self._poisson
+        X = poisson.sides(len(z))
+        columns, wide = X.reshape(-1), X.shape[1]
+        to = np.zeros((len(z), poisson.n_components, 3))
+        for t, row in enumerate(z):
+            decode_faces(row, self._frames, self._weigh, poisson.pull, poisson.rows, 3 * t, wide, columns)
+            to[t] = self._centres + self._places(row) / self._place_scale
+        poisson.solve(X, to, out)
+
+    def _places(self, z: FloatArray) -> FloatArray:
+        """Places of the pieces (c, 3) of one vector, a view."""
+        return z[9 * len(self.faces) :].reshape(-1, 3)
+
+    def state(self) -> dict[str, FloatArray]:
+        """Return what `from_state` needs.
+
+        Returns
+        -------
+        dict of str to ndarray
+            ``rest``, ``faces`` and ``references``, all as float64.
+        """
+        faces = self.faces.astype(np.float64)
+        return {"rest": self.rest, "faces": faces, "references": np.ascontiguousarray(self.references)}
+
+    @classmethod
+    def from_state(cls, state: Mapping[str, FloatArray]) -> GradientSpace:
+        """Make the space that `state` describes.
+
+        Parameters
+        ----------
+        state : mapping of str to ndarray
+            As `state` gave it.
+
+        Returns
+        -------
+        GradientSpace
+            The same space.
+        """
+        return cls(state["rest"], np.asarray(state["faces"]).astype(np.int64), state["references"])
+
+    @classmethod
+    def from_clip(cls, rest: FloatArray, faces: IntArray, frames: FloatArray | None = None) -> GradientSpace:
+        """Make the space that counts rotations from the mean of every face over a clip.
+
+        Parameters
+        ----------
+        rest : (n, 3) float
+            Rest vertices, metres.
+        faces : (m, 3) int
+            Faces.
+        frames : (T, n, 3) float, optional
+            A clip or example poses; rotations are counted from the rest if not given.
+
+        Returns
+        -------
+        GradientSpace
+            Ready to encode and decode.
+
+        Raises
+        ------
+        ValueError
+            If a shape or an index is wrong, or no face has an area.
+        """
+        space = cls(rest, faces)
+        if frames is None or len(frames) == 0:
+            return space
+        return cls(rest, faces, space._mean_rotations(frames))
+
+    def _mean_rotations(self, frames: FloatArray) -> FloatArray:
+        total, turned = np.zeros(self._frames.shape), np.zeros(self._frames.shape)
+        for frame in frames:
+            V = as_floats(frame, "frames", (self.n_vertices, 3)).ravel()
+            turn_faces(V, self._corners, self._inverse, self._frames, turned)
+            total += turned
+        # of the sum of R B, B the axes at rest, the nearest rotation is M B
+        axes = polar_rotation(total[:-3].reshape(3, 3, -1).transpose(2, 1, 0))
+        return axes @ self._frames[:-3].reshape(3, 3, -1).transpose(2, 0, 1)
