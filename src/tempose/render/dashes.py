@@ -9,7 +9,9 @@ import numpy as np
 from tempose.typing import FloatArray
 
 
-def dashed(points: FloatArray, values: FloatArray, dash: Sequence[float]) -> list[tuple[FloatArray, FloatArray]]:
+def dashed(
+    points: FloatArray, values: FloatArray, dash: Sequence[float]
+) -> list[tuple[FloatArray, FloatArray]]:
     """Cut a line into the pieces of it that are drawn.
 
     Parameters

@@ -56,14 +56,13 @@ def _element(shape: Shape) -> str:
 
 def _line(shape: Stroke, faint: str) -> str:
     dash = f' stroke-dasharray="{" ".join(f"{d:g}" for d in shape.dash)}"' if shape.dash else ""
-    style = (
-        f'fill="none" stroke-width="{shape.width:g}" stroke-linecap="round" stroke-linejoin="round"{dash}{faint}'
-    )
+    style = f'fill="none" stroke-width="{shape.width:g}" stroke-linejoin="round"{dash}{faint}'
     if isinstance(shape.color, str):
-        return f'<polyline points="{_pairs(shape.points)}" stroke="{shape.color}" {style}/>'
+        ends = 'stroke-linecap="round"'
+        return f'<polyline points="{_pairs(shape.points)}" stroke="{shape.color}" {ends} {style}/>'
     middle = 0.5 * (shape.colors[1:] + shape.colors[:-1])
     parts = [
-        f'<polyline points="{_pairs(shape.points[i : i + 2])}" stroke="{_hex(c)}"/>'
+        f'<polyline points="{_pairs(shape.points[i : i + 2])}" stroke="{_hex(c)}" stroke-linecap="round"/>'
         for i, c in enumerate(middle)
     ]
     return f"<g {style}>{''.join(parts)}</g>"

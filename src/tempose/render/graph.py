@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ class Graph:
     log: bool = False
     """Whether the vertical scale is one of powers of ten."""
 
-    def place(self, x: float | FloatArray, y: float | FloatArray) -> FloatArray:
+    def place(self, x: Any, y: Any) -> FloatArray:
         """Return where numbers lie in the drawing.
 
         Parameters
@@ -65,7 +66,7 @@ class Graph:
             Whether only whole numbers stand under the graph.
         """
         left, top, right, bottom = self.box
-        ink = {"size": 11.0, "color": self.tone.text_3}
+        ink: dict[str, Any] = {"size": 11.0, "color": self.tone.text_3}
         for v in self._y_ticks():
             y = float(self.place(self.x_range[0], v)[1])
             self.drawing.add(Stroke(np.array([[left, y], [right, y]]), self.tone.line, 1.0))
@@ -88,9 +89,7 @@ class Graph:
         ticks = [m * 10.0**k for k in range(int(np.floor(low)), int(np.ceil(high)) + 1) for m in steps]
         return [v for v in ticks if self.y_range[0] * 0.999 <= v <= self.y_range[1] * 1.001]
 
-    def line(
-        self, x: FloatArray, y: FloatArray, color: str, *, width: float = 1.8, dash: Sequence[float] = ()
-    ) -> None:
+    def line(self, x: Any, y: Any, color: str, *, width: float = 1.8, dash: Sequence[float] = ()) -> None:
         """Draw a curve; where values are missing it breaks.
 
         Parameters
@@ -104,8 +103,8 @@ class Graph:
         dash : sequence of float, optional
             As for `Stroke`.
         """
-        points = self.place(np.asarray(x), np.clip(y, *self.y_range))
-        there = np.isfinite(points).all(axis=1)
+        points: Any = self.place(x, np.clip(y, *self.y_range))
+        there = np.asarray(np.isfinite(points).all(axis=1))
         for part in np.split(np.arange(len(points)), np.flatnonzero(np.diff(there.astype(int))) + 1):
             if len(part) and there[part[0]]:
                 self.drawing.add(Stroke(points[part], color, width, dash))

@@ -100,7 +100,9 @@ def draw_scree(
             graph.drawing.disc(place, 5.0 if i == m else 2.4, tone.accent)
         if i == m:
             graph.drawing.disc(place, 3.2, tone.panel)
-            words = Words(f"m = {m}", (float(place[0]) + 9, float(place[1]) - 11), 12, tone.accent, halo=tone.panel)
+            words = Words(
+                f"m = {m}", (float(place[0]) + 9, float(place[1]) - 11), 12, tone.accent, halo=tone.panel
+            )
             graph.drawing.add(words)
     return graph.drawing
 

@@ -17,7 +17,9 @@ class Crowd:
     """(n, 2) pixels that should stay free, such as a curve."""
     bounds: tuple[float, float, float, float]
     """Left, top, right, bottom of what may be used."""
-    boxes: list[tuple[float, float, float, float]] = field(default_factory=list[tuple[float, float, float, float]])
+    boxes: list[tuple[float, float, float, float]] = field(
+        default_factory=list[tuple[float, float, float, float]]
+    )
     """Taken already."""
 
     def cost(self, at: FloatArray, half: tuple[float, float]) -> float:

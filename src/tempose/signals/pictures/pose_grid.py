@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tempose.render import Theme
 from tempose.render.drawing import Drawing, Inset, Stroke
@@ -71,7 +71,10 @@ def draw_pose_grid(
     P = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     V = poses_at(signals, P)
     seen = signals.shape.vertices(signals.coordinates(signals.times[:: max(signals.n_frames // 24, 1)]))
-    studio, trust = make_studio(seen, tone, (round(0.94 * cell), round(0.94 * cell)), view), make_trust(signals)
+    studio, trust = (
+        make_studio(seen, tone, (round(0.94 * cell), round(0.94 * cell)), view),
+        make_trust(signals),
+    )
     for i, (p, v) in enumerate(zip(P, V)):
         picture = studio.picture(v, signals.mesh.faces)
         picture[..., 3] = np.round(picture[..., 3] * trust.strength(p, v)).astype(np.uint8)
@@ -79,7 +82,9 @@ def draw_pose_grid(
         graph.drawing.add(Inset(picture, (float(at[0]), float(at[1])), studio.size))
         progress(i + 1, len(P), "drawing poses")
     seconds, curve = curve_points(signals)
-    for points, colors in _visible(graph.place(*curve.T), time_colors(seconds, signals.duration, tone), graph.box):
+    for points, colors in _visible(
+        graph.place(*curve.T), time_colors(seconds, signals.duration, tone), graph.box
+    ):
         graph.drawing.add(Stroke(points, colors, 2.4, opacity=0.85))
     return graph.drawing
 
@@ -100,7 +105,7 @@ def poses_at(signals: Signals, P: FloatArray) -> FloatArray:
         h(g(p)), metres. Where the pose signal is made of windows, that of the nearest point of the curve.
     """
     seconds, curve = curve_points(signals)
-    ticks = signals.ticks(seconds[cKDTree(curve).query(P)[1]])
+    ticks = signals.ticks(seconds[KDTree(curve).query(P)[1]])
     captured = ticks if signals.origin is None else signals.origin(ticks)
     return signals.shape.vertices(signals.pose(P, captured))
 

@@ -1,4 +1,4 @@
-"""The pose plane as a picture: the curve, its controls, the frames, the sites, and what the meshes look like."""
+"""The pose plane as a picture: the curve, its controls, the frames, the sites, and some of the meshes."""
 
 from __future__ import annotations
 
@@ -128,7 +128,9 @@ def _thumbnails(graph: Graph, signals: Signals, frames: FloatArray, crowd: Crowd
             continue
         color = time_colors(signals.times[i : i + 1], signals.duration, graph.tone)
         graph.drawing.add(Stroke(np.stack([frames[i], at]), np.repeat(color, 2, axis=0), 1.0, opacity=0.45))
-        graph.drawing.add(Inset(studio.picture(v, signals.mesh.faces), (float(at[0]), float(at[1])), THUMBNAIL))
+        graph.drawing.add(
+            Inset(studio.picture(v, signals.mesh.faces), (float(at[0]), float(at[1])), THUMBNAIL)
+        )
 
 
 def _polygon(graph: Graph, signals: Signals) -> FloatArray:
@@ -205,9 +207,7 @@ def _control_numbers(graph: Graph, controls: FloatArray, crowd: Crowd) -> None:
 
 def _inside(graph: Graph, points: FloatArray) -> dict[int, FloatArray]:
     left, top, right, bottom = graph.box
-    return {
-        j: at for j, at in enumerate(points) if left < at[0] < right and top < at[1] < bottom
-    }
+    return {j: at for j, at in enumerate(points) if left < at[0] < right and top < at[1] < bottom}
 
 
 def _label(

@@ -13,9 +13,9 @@ from tempose.render.themes import rgb
 from tempose.signals.pictures.views import telling_view
 from tempose.typing import FloatArray, IntArray
 
-FINE = 4
+FINE = 3
 """Pixels rendered for each pixel shown, along each axis."""
-_QUALITY = Quality(samples=1, key=5, sky=24, resolution=160)
+_QUALITY = Quality(samples=1, key=4, sky=14, resolution=128)
 _NOWHERE = "#ff00fe"
 """A colour that no shaded surface has: where it stays, there is no mesh."""
 
