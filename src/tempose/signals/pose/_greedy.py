@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.signals.pose.basis import Plane, best_anchors
-from tempose.typing import FloatArray, IntArray
+from tempose.typing import BoolArray, FloatArray, IntArray
 
 DEPENDENT = 1e-9
 """A column of which less than this part is new makes no further site."""
@@ -68,7 +68,7 @@ class GreedyFit:
         self.errors.append(float(np.square(self.rest).sum()))
         return True
 
-    def farthest(self, taken: FloatArray) -> int:
+    def farthest(self, taken: BoolArray) -> int:
         """Return the row with the greatest error among those not taken.
 
         Parameters

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import qr
@@ -95,8 +96,8 @@ def best_anchors(plane: Plane, q: FloatArray) -> IntArray:
         Candidates with well conditioned affine coordinates, ascending; fewer if they are all on a line.
     """
     columns = plane.affine(q).T
-    _, R, pivots = qr(columns, mode="economic", pivoting=True)
-    sizes = np.abs(np.diagonal(R))
+    found: Any = qr(columns, mode="economic", pivoting=True)
+    sizes, pivots = np.abs(np.diagonal(found[1])), found[2]
     rank = int((sizes > FLAT * sizes[0]).sum())
     return np.sort(pivots[:rank]).astype(np.int64)
 

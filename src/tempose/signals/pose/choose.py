@@ -215,7 +215,8 @@ def _chosen(
     if found.bad:
         warnings = (
             *warnings,
-            f"{found.bad} transitions stray from the smooth motion by up to {found.transitions.worst:.2g} steps",
+            f"{found.bad} transitions stray from the smooth motion, by up to {found.transitions.worst:.2g} "
+            "steps",
         )
     return LayoutChoice(
         read_only(found.positions),

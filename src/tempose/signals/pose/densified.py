@@ -66,7 +66,7 @@ def densified_pose_signal(
     P: FloatArray,
     X: FloatArray,
     time: PlaceMap,
-    l: int | None = None,  # noqa: E741
+    l: int | None = None,
     *,
     times: int = 4,
     path: Spline | None = None,

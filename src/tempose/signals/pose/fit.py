@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.linalg import lstsq
 
@@ -55,7 +57,11 @@ def fit_pose_signal(
     basis = SiteBasis(plane, s[anchors], np.unique(others, axis=0))
     root = np.sqrt(w)[:, None]
     columns = root * basis.columns(plane(P))
-    coefficients = np.asarray(lstsq(columns, root * X, lapack_driver="gelsy", cond=1e-14)[0])
-    rest = root * X - columns @ coefficients
-    coefficients += np.asarray(lstsq(columns, rest, lapack_driver="gelsy", cond=1e-14)[0])
+    coefficients = _solve(columns, root * X)
+    coefficients += _solve(columns, root * X - columns @ coefficients)
     return basis.signal(coefficients)
+
+
+def _solve(A: FloatArray, B: FloatArray) -> FloatArray:
+    found: Any = lstsq(A, B, lapack_driver="gelsy", cond=1e-14)
+    return found[0]

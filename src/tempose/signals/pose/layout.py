@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 from scipy.sparse.linalg import eigsh
 
 from tempose._validate import as_floats, read_only
-from tempose.signals.pose._descent import GuttmanDescent
+from tempose.signals.pose._descent import descend
 from tempose.signals.pose.pins import Pins, check_pins
 from tempose.typing import FloatArray, IntArray
 
@@ -55,7 +55,8 @@ class PoseLayout:
     -----
     Minimises eq. (6) of [1]_ under fixed places by SMACOF [2]_: with unit weights and c fixed frames the
     inverse of ``V_ff = n I - 1 1^T`` is ``(I + 1 1^T / c) / n``, so that no matrix is ever solved. Steps
-    are lengthened by the memory of L-BFGS; one that raises the stress is replaced by the plain one, which cannot.
+    are lengthened by the memory of L-BFGS; one that raises the stress is replaced by the plain one, which
+    cannot.
 
     References
     ----------
@@ -95,7 +96,7 @@ class PoseLayout:
         if n <= 64:
             values, vectors = eigh(gram, subset_by_index=[max(n - 2, 0), n - 1])
         else:
-            values, vectors = eigsh(gram, k=2, which="LA", v0=np.linspace(1.0, 2.0, n), tol=1e-10)
+            values, vectors = eigsh(gram, k=2, which="LA", v0=np.linspace(1.0, 2.0, n))
         P = np.zeros((n, 2))
         for axis, k in enumerate(np.argsort(-values)):
             column = vectors[:, k] * np.sqrt(max(values[k], 0.0))
@@ -169,22 +170,14 @@ class PoseLayout:
         warnings: tuple[str, ...],
     ) -> LayoutResult:
         P[frames] = places
-        free = np.ones(len(P), dtype=np.bool_)
-        free[frames] = False
-        search = GuttmanDescent(self._unit, P.T / self.scale, free)
-        search.run(tolerance, iterations)
-        positions = np.ascontiguousarray(search.best.T) * self.scale
+        z = np.ascontiguousarray(P.T / self.scale)
+        free = np.delete(np.arange(len(P)), frames)
+        stresses = np.zeros(max(iterations, 1))
+        passes, accepted, step = descend(self._unit, z, free, tolerance, len(stresses), stresses)
+        positions = z.T * self.scale
         positions[frames] = places
-        history = np.sqrt(np.array(search.history) / self._total)
-        return LayoutResult(
-            positions,
-            float(history[-1]),
-            search.passes,
-            search.step <= tolerance,
-            search.step,
-            history,
-            warnings,
-        )
+        history = np.sqrt(stresses[:accepted] / self._total)
+        return LayoutResult(positions, float(history[-1]), passes, step <= tolerance, step, history, warnings)
 
 
 def align(P: FloatArray, frames: IntArray, places: FloatArray) -> FloatArray:

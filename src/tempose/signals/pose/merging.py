@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tempose.typing import FloatArray, IntArray
 
@@ -53,7 +53,7 @@ def merge_places(P: FloatArray, X: FloatArray, weights: FloatArray | None = None
     first = np.unique(group, return_index=True)[1]
     if len(first) == len(P):
         return Places(group, first, P, X, weights, 0.0)
-    total = np.bincount(group, weights)
+    total = np.bincount(group, weights).astype(np.float64)
 
     def mean(A: FloatArray) -> FloatArray:
         sums = np.zeros((len(first), A.shape[1]))
@@ -70,7 +70,7 @@ def _groups(P: FloatArray) -> IntArray:
     moving = steps[steps > 0]
     near = MERGE * float(np.median(moving)) if len(moving) else 0.0
     leader = np.arange(len(P))
-    pairs = cKDTree(P).query_pairs(near, output_type="ndarray")
+    pairs = KDTree(P).query_pairs(near, output_type="ndarray")
     # in order of the later frame and then of the earlier, so that the earliest place near it wins
     for i, j in pairs[np.lexsort((pairs[:, 0], pairs[:, 1]))]:
         if leader[j] == j and leader[i] == i:

@@ -81,7 +81,7 @@ def _refuse_line(places: FloatArray, distances: FloatArray) -> None:
     spread = np.sort(np.linalg.eigvalsh(0.5 * gram))[::-1]
     if width <= 1e-9 * length and spread[1] > 1e-12 * spread[0]:
         raise ValueError(
-            f"pins hold all {len(places)} frames on one line (width / length {width / max(length, 1e-300):.2g}) "
-            f"but the poses are not on one (their second spread is {np.sqrt(spread[1] / spread[0]):.2g} of the "
-            "first); move one off the line, or leave frames free"
+            f"pins hold all {len(places)} frames on one line (width {width / max(length, 1e-300):.2g} of its "
+            f"length), but the poses are not on one (second spread {np.sqrt(spread[1] / spread[0]):.2g} of "
+            "the first); move one off the line, or leave frames free"
         )

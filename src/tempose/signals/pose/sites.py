@@ -31,7 +31,7 @@ class SiteOrder:
     basis: SiteBasis
     """Columns of the least-squares problem, in the order of the sites."""
     factors: tuple[FloatArray, FloatArray]
-    """(u, d) orthonormal rows and (u, u) upper triangle: the problem on the first l sites uses the first l."""
+    """(u, d) orthonormal rows and a (u, u) upper triangle; on l sites the problem uses the first l."""
 
     @property
     def least(self) -> int:
@@ -43,7 +43,7 @@ class SiteOrder:
         """Most sites that differ from one another."""
         return len(self.order)
 
-    def signal(self, l: int | None = None) -> PoseSignal:  # noqa: E741
+    def signal(self, l: int | None = None) -> PoseSignal:
         """Return the least-squares pose signal on the first l sites.
 
         Parameters
