@@ -1,0 +1,184 @@
+"""Edge lengths and dihedral angles as a shape space."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from tempose.shape_spaces.edge_dihedral.assembly import Assembly
+from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_meshes, over_rows
+from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
+from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
+from tempose.shape_spaces.edge_dihedral.placement import Placement
+from tempose.shape_spaces.edge_dihedral.reference import Reference, edge_areas, make_reference
+from tempose.typing import FloatArray, IntArray
+
+_BEND = 0.3
+_DOUBT = 0.02
+_SHORTEST = 1e-3
+_TURN = 2 * np.pi
+
+
+class EdgeDihedralSpace:
+    """Lengths of edges, signed dihedral angles and six numbers for the place: d = 2 E + 6.
+
+    Parameters
+    ----------
+    reference : Reference
+        What is counted from; `from_clip` makes it.
+    """
+
+    name: ClassVar[str] = "edge-dihedral"
+
+    def __init__(self, reference: Reference) -> None:
+        self.reference = reference
+        self.hinges = hinges = find_hinges(reference.faces)
+        l0 = reference.lengths
+        areas = edge_areas(hinges, l0)
+        self.length_weights = np.sqrt(areas / areas.sum()) / l0
+        edge_of_slot = np.arange(hinges.n_slots)
+        edge_of_slot[hinges.slot] = hinges.edge
+        self.angle_weights = _BEND * np.sqrt(areas / areas.sum())[edge_of_slot]
+        # a hinge that swings to and fro over the clip says little about where its faces shall turn
+        stiffness = np.sqrt(areas)[hinges.edge] / l0[hinges.edge] / (_DOUBT + reference.spread[hinges.slot])
+        self.placement = Placement(reference.vertices, reference.faces, reference.steadiness)
+        self.assembly = Assembly(reference.faces, hinges, self.n_vertices, l0, stiffness)
+        self.n_edges, self.n_shape = len(l0), len(l0) + hinges.n_slots
+
+    @property
+    def dimension(self) -> int:
+        """Length d of a vector."""
+        return self.n_shape + self.placement.dimension
+
+    @property
+    def n_vertices(self) -> int:
+        """Number n of vertices of a mesh."""
+        return len(self.reference.vertices)
+
+    def encode(self, V: FloatArray) -> FloatArray:
+        """Measure meshes, each for itself.
+
+        Parameters
+        ----------
+        V : (..., n, 3) float
+            Vertex positions, metres.
+
+        Returns
+        -------
+        (..., d) ndarray of float64
+            Coordinates; angles within half a turn of the reference.
+
+        Raises
+        ------
+        ValueError
+            If the shape is wrong, a value is not finite, or an edge has no length.
+        """
+        return over_rows(self._encode, check_meshes(V, self.n_vertices), 2, (self.dimension,))
+
+    def encode_path(self, V: FloatArray) -> FloatArray:
+        """Measure the frames of a clip; angles go on from the frame before.
+
+        Parameters
+        ----------
+        V : (T, n, 3) float
+            Frames in the order of time.
+
+        Returns
+        -------
+        (T, d) ndarray of float64
+            Coordinates.
+        """
+        path = self.encode(V)
+        angles = path[:, self.n_edges : self.n_shape]
+        angles[:] = np.unwrap(angles / self.angle_weights, axis=0) * self.angle_weights
+        self.placement.unwrap(path[:, self.n_shape :])
+        return path
+
+    def _encode(self, V: FloatArray) -> FloatArray:
+        lengths, angles = lengths_and_dihedrals(V, self.reference.faces, self.hinges)
+        away = angles - self.reference.dihedrals
+        angles = angles - np.round(away / _TURN) * _TURN
+        place = self.placement.encode(V)
+        return np.concatenate([lengths * self.length_weights, angles * self.angle_weights, place])
+
+    def decode(self, z: FloatArray) -> FloatArray:
+        """Build meshes, by least squares where lengths and angles belong to none.
+
+        Parameters
+        ----------
+        z : (..., d) float
+            Coordinates.
+
+        Returns
+        -------
+        (..., n, 3) ndarray of float64
+            Vertex positions, metres.
+
+        Raises
+        ------
+        ValueError
+            If the shape is wrong or a value is not finite.
+        """
+        return over_rows(self._decode, check_coordinates(z, self.dimension), 1, (self.n_vertices, 3))
+
+    def _decode(self, z: FloatArray) -> FloatArray:
+        lengths = z[: self.n_edges] / self.length_weights
+        lengths = np.maximum(lengths, _SHORTEST * self.reference.lengths)
+        angles = z[self.n_edges : self.n_shape] / self.angle_weights
+        built = self.assembly.build(lengths, angles)
+        return self.placement.place(built.vertices, z[self.n_shape :])
+
+    def state(self) -> dict[str, FloatArray]:
+        """Return what `from_state` needs.
+
+        Returns
+        -------
+        dict of str to ndarray
+            The fields of the reference.
+        """
+        return self.reference.state()
+
+    @classmethod
+    def from_state(cls, state: Mapping[str, FloatArray]) -> EdgeDihedralSpace:
+        """Make the space that `state` describes.
+
+        Parameters
+        ----------
+        state : mapping of str to ndarray
+            As `state` gave it.
+
+        Returns
+        -------
+        EdgeDihedralSpace
+            The same space.
+        """
+        return cls(Reference.from_state(state))
+
+    @classmethod
+    def from_clip(
+        cls, rest: FloatArray, faces: IntArray, frames: FloatArray | None = None
+    ) -> EdgeDihedralSpace:
+        """Make the space of a mesh.
+
+        Parameters
+        ----------
+        rest : (n, 3) float
+            Rest vertices, metres.
+        faces : (m, 3) int
+            Faces.
+        frames : (T, n, 3) float, optional
+            A clip or poses: lengths and angles are counted from their mean.
+
+        Returns
+        -------
+        EdgeDihedralSpace
+            Ready to encode and decode.
+
+        Raises
+        ------
+        ValueError
+            If there is no face, a face names a vertex twice, or an edge has no length.
+        """
+        return cls(make_reference(rest, faces, frames))
