@@ -1,0 +1,132 @@
+"""Fitting a pose signal window by window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose._validate import as_floats
+from tempose.signals.fidelity import choose_sites
+from tempose.signals.pose.pins import Pins
+from tempose.signals.pose.signal import PoseSignal
+from tempose.signals.pose.sites import order_sites
+from tempose.signals.windows.cover import Cover, cover
+from tempose.signals.windows.layout import KEYS, LongLayout, long_layout
+from tempose.signals.windows.pose import WindowedPose
+from tempose.typing import FloatArray, Progress, silent
+
+WINDOW = 300
+"""Frames of a window: the greedy order of sites costs their cube, and a surface has few folds for so many."""
+
+OVERLAP = 60
+"""Frames that neighbouring windows share."""
+
+
+@dataclass(frozen=True, eq=False)
+class WindowedFit:
+    """A long clip in the pose plane."""
+
+    pose: WindowedPose
+    """g."""
+    layout: LongLayout
+    """Where the frames lie."""
+    errors: FloatArray
+    """(T,) squared residual of g at each frame."""
+
+    @property
+    def positions(self) -> FloatArray:
+        """(T, 2) places of the frames."""
+        return self.layout.positions
+
+
+def fit_windows(
+    X: FloatArray,
+    window: int = WINDOW,
+    overlap: int | None = None,
+    *,
+    sites: int | None = None,
+    limit: float = 0.0,
+    keys: int = KEYS,
+    pins: Pins | None = None,
+    progress: Progress = silent,
+) -> WindowedFit:
+    """Lay out a long clip and fit its pose signal, in time linear in the frames.
+
+    Parameters
+    ----------
+    X : (T, m) float
+        Shape coordinates of the frames.
+    window : int, default 300
+        Largest number of frames in a window.
+    overlap : int, optional
+        Frames that neighbouring windows share; a fifth of a window if left out.
+    sites : int, optional
+        Number of sites in each window.
+    limit : float, default 0
+        Where `sites` is left out: the largest mean squared residual of the frames of a window. 0 takes all.
+    keys : int, default 300
+        See `long_layout`; one window is laid out without.
+    pins : mapping of int to (2,) float, optional
+        Frames that the user keeps at places.
+    progress : Progress, optional
+        Told of each window.
+
+    Returns
+    -------
+    WindowedFit
+        Places and pose signal.
+
+    Raises
+    ------
+    ValueError
+        If window and overlap do not go together or `X` is not finite.
+    """
+    X = as_floats(X, "X", ("T", "m"))
+    windows = cover(len(X), window, window // 5 if overlap is None else overlap)
+    layout = long_layout(X, len(X) if len(windows) == 1 else keys, pins, progress)
+    pose = fit_windowed_pose(layout.positions, X, windows, sites=sites, limit=limit, progress=progress)
+    found = pose(layout.positions, np.arange(float(len(X))))
+    return WindowedFit(pose, layout, np.square(found - X).sum(axis=1))
+
+
+def fit_windowed_pose(
+    P: FloatArray,
+    X: FloatArray,
+    windows: Cover,
+    *,
+    sites: int | None = None,
+    limit: float = 0.0,
+    progress: Progress = silent,
+) -> WindowedPose:
+    """Fit a pose signal to each window of frames whose places are known.
+
+    Parameters
+    ----------
+    P : (T, 2) float
+        Places of the frames.
+    X : (T, m) float
+        Their shape coordinates.
+    windows : Cover
+        The windows.
+    sites : int, optional
+        Number of sites in each window.
+    limit : float, default 0
+        Where `sites` is left out: the largest mean squared residual of the frames of a window. 0 takes all.
+    progress : Progress, optional
+        Told of each window.
+
+    Returns
+    -------
+    WindowedPose
+        The pose signal.
+    """
+    signals: list[PoseSignal] = []
+    for i in range(len(windows)):
+        frames = windows.frames(i)
+        order = order_sites(P[frames], X[frames])
+        n_frames = frames.stop - frames.start
+        l = choose_sites(order.errors, 0.0, limit * n_frames) if sites is None else min(sites, n_frames)
+        signals.append(order.signal(max(l, order.least)))
+        progress(i + 1, len(windows), "pose signal")
+    return WindowedPose(tuple(signals), windows)

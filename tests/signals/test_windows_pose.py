@@ -1,0 +1,132 @@
+"""A pose signal of windows is the plain one where one window suffices, and smooth where two meet."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.spatial.distance import cdist
+
+from tempose.signals.pose.layout import PoseLayout
+from tempose.signals.pose.sites import order_sites
+from tempose.signals.windows import WindowedFit, WindowedPose, cover, fit_windowed_pose, fit_windows
+from tempose.typing import FloatArray
+
+
+def pacing(T: int, unit: float = 1.0) -> FloatArray:
+    """Shape coordinates of a gait whose stride changes slowly."""
+    t = np.arange(T)
+    stride, slow = 2 * np.pi * t / 23.7, np.sin(2 * np.pi * t / 400)
+    columns = [(1 + 0.3 * slow) * np.sin(stride), np.cos(stride), 0.4 * np.sin(2 * stride + slow), 0.6 * slow]
+    columns += [0.1 * np.sin(3 * stride + k * slow) for k in range(3)]
+    return unit * np.stack(columns, axis=1)
+
+
+@pytest.fixture(scope="module")
+def fitted() -> WindowedFit:
+    return fit_windows(pacing(400), 100, 30, limit=1e-4)
+
+
+def test_one_window_is_the_plain_fit() -> None:
+    X = pacing(90)
+    found = fit_windows(X, 300, sites=20)
+    P = PoseLayout(cdist(X, X)).solve().positions
+    assert_array_equal(found.positions, P)
+    plain = order_sites(P, X).signal(20)
+    p = np.random.default_rng(0).standard_normal((50, 2))
+    for origin in (None, np.linspace(-3, 95, 50)):
+        assert_array_equal(found.pose(p, origin), plain(p))
+        assert_array_equal(found.pose.jacobian(p, origin), plain.jacobian(p))
+        assert_array_equal(found.pose.second_derivatives(p, origin), plain.second_derivatives(p))
+
+
+def test_one_window_keeps_pins_as_the_plain_fit_does() -> None:
+    X, pins = pacing(60), {3: (0.5, 0.2), 41: (-1.0, 0.0)}
+    assert_array_equal(
+        fit_windows(X, 300, pins=pins).positions, PoseLayout(cdist(X, X)).solve(pins).positions
+    )
+
+
+def test_frames_are_met_to_the_limit(fitted: WindowedFit) -> None:
+    X = pacing(400)
+    residual = np.square(fitted.pose(fitted.positions, np.arange(400.0)) - X).sum(axis=1)
+    assert_allclose(fitted.errors, residual, atol=1e-15)
+    for i in range(len(fitted.pose.cover)):
+        frames = fitted.pose.cover.frames(i)
+        alone = np.square(fitted.pose.windows[i](fitted.positions[frames]) - X[frames]).sum(axis=1)
+        assert alone.mean() <= 1e-4 * (1 + 1e-9)
+    assert residual.mean() <= 1e-4
+
+
+def test_all_sites_give_every_frame_back() -> None:
+    X = pacing(250)
+    found = fit_windows(X, 100, 30)
+    assert found.errors.max() < 1e-16
+
+
+def test_where_windows_meet_value_slope_and_curvature_go_on(fitted: WindowedFit) -> None:
+    windows = fitted.pose.cover
+    p = fitted.positions[windows.frames(1).start] + [0.1, 0.2]
+    for at in (windows.starts[1], windows.stops[0], windows.starts[2]):
+        h = 0.02
+        x = fitted.pose(np.tile(p, (9, 1)), at + h * np.arange(-4, 5))
+        jumps = [np.abs(np.diff(x, order, axis=0)).max() / h**order for order in (1, 2)]
+        size = np.abs(fitted.pose.windows[1](p) - fitted.pose.windows[0](p)).max()
+        width = windows.stops[0] - windows.starts[1]
+        # the fade's derivatives are at most 1.9 and 5.8 over the width; here, at its ends, they are nearly 0
+        assert jumps[0] < 0.01 * size / width and jumps[1] < 0.5 * size / width**2
+
+
+def test_blend_is_the_weighted_sum_of_the_two_windows(fitted: WindowedFit) -> None:
+    random = np.random.default_rng(1)
+    p, t = random.standard_normal((200, 2)), random.uniform(0, 399, 200)
+    first, weight = fitted.pose.cover(t)
+    pose = fitted.pose
+    found = pose(p, t), pose.jacobian(p, t), pose.second_derivatives(p, t)
+    for k in range(200):
+        i, w = int(first[k]), weight[k]
+        g, h = pose.windows[i], pose.windows[min(i + 1, len(pose.windows) - 1)]
+        assert_allclose(found[0][k], (1 - w) * g(p[k]) + w * h(p[k]), atol=1e-13)
+        assert_allclose(found[1][k], (1 - w) * g.jacobian(p[k]) + w * h.jacobian(p[k]), atol=1e-12)
+        second = (1 - w) * g.second_derivatives(p[k]) + w * h.second_derivatives(p[k])
+        assert_allclose(found[2][k], second, atol=1e-11)
+
+
+@pytest.mark.parametrize("batch", [(), (1,), (3, 1, 2), (0,)])
+def test_any_batch_gives_the_bits_of_single_places(fitted: WindowedFit, batch: tuple[int, ...]) -> None:
+    random = np.random.default_rng(2)
+    p, t = random.standard_normal((*batch, 2)), random.uniform(0, 399, batch)
+    x = fitted.pose(p, t)
+    assert x.shape == (*batch, 7) and fitted.pose.jacobian(p, t).shape == (*batch, 7, 2)
+    for i in np.ndindex(batch):
+        assert_array_equal(x[i], fitted.pose(p[i], t[i]))
+
+
+def test_without_ticks_the_window_of_the_nearest_site_answers(fitted: WindowedFit) -> None:
+    for i, g in enumerate(fitted.pose.windows):
+        alone = [
+            s for s in g.sites if sum((h.sites == s).all(axis=1).any() for h in fitted.pose.windows) == 1
+        ][:3]
+        for site in alone:
+            assert fitted.pose.nearest_window(site) == i
+            assert_array_equal(fitted.pose(site), g(site))
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_the_unit_does_not_matter(unit: float) -> None:
+    one, other = (fit_windows(pacing(200, u), 80, 25, sites=20) for u in (1.0, unit))
+    assert_allclose(other.positions, unit * one.positions, atol=1e-3 * unit)
+    t = np.linspace(0, 199, 37)
+    p = one.positions[t.astype(int)]
+    assert_allclose(other.pose(unit * p, t), unit * one.pose(p, t), atol=0.02 * unit)
+
+
+def test_windows_and_cover_must_go_together(fitted: WindowedFit) -> None:
+    with pytest.raises(ValueError, match="one for each of the cover"):
+        WindowedPose(fitted.pose.windows[:2], fitted.pose.cover)
+
+
+def test_places_given_are_kept() -> None:
+    X, P = pacing(150), np.random.default_rng(3).standard_normal((150, 2))
+    pose = fit_windowed_pose(P, X, cover(150, 60, 20))
+    assert_allclose(pose(P, np.arange(150.0)), X, atol=1e-9)
