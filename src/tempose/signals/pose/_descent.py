@@ -1,9 +1,9 @@
 """Descent by Guttman steps, with the memory of L-BFGS.
 
 In the metric of ``V_ff = n I - 1 1^T`` the gradient of half the stress is minus the Guttman step, so the
-plain step is steepest descent with length 1, and L-BFGS in that metric starts from it. Where the stress curves
-down along the last step (a saddle), or a long step raised it, the memory is dropped; the plain step that
-follows cannot raise the stress, and grows as long as the stress keeps curving down.
+plain step is steepest descent with length 1, and L-BFGS in that metric starts from it. Where the stress
+curves down along the last step (a saddle), or a long step raised it, the memory is dropped; the plain step
+that follows cannot raise the stress, and grows as long as the stress keeps curving down.
 """
 
 from __future__ import annotations

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numba
 import numpy as np
 
 from tempose.signals.pose.basis import Plane, best_anchors
@@ -26,8 +29,11 @@ class GreedyFit:
 
     def __init__(self, root: FloatArray, X: FloatArray, most: int) -> None:
         self.root = root
+        self._weights = np.square(root[:, 0])
         self.rest = root * X
         """(u, m) weighted residual."""
+        self.sizes = np.square(self.rest).sum(axis=1)
+        """(u,) squared length of its rows."""
         self.Q = np.zeros((most, len(X)))
         """(l, u) orthonormal rows, and..."""
         self.T = np.zeros((most, most))
@@ -63,9 +69,9 @@ class GreedyFit:
             return False
         self.T[k, k] = length
         self.Q[k] = v / length
-        self.rest -= np.outer(self.Q[k], self.Q[k] @ self.rest)
+        remove(self.rest, self.Q[k], self.Q[k] @ self.rest, self.sizes)
         self.count += 1
-        self.errors.append(float(np.square(self.rest).sum()))
+        self.errors.append(float(self.sizes.sum()))
         return True
 
     def farthest(self, taken: BoolArray) -> int:
@@ -83,8 +89,31 @@ class GreedyFit:
         """
         if taken.all():
             return -1
-        size = np.square(self.rest).sum(axis=1) / np.square(self.root[:, 0])
-        return int(np.where(taken, -1.0, size).argmax())
+        return int(np.where(taken, -1.0, self.sizes / self._weights).argmax())
+
+
+@numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def remove(rest: Any, q: Any, part: Any, sizes: Any) -> None:
+    """Subtract ``q part^T`` from a matrix and measure its rows, in one pass.
+
+    Parameters
+    ----------
+    rest : (u, m) float64
+        Changed.
+    q : (u,) float64
+        One factor.
+    part : (m,) float64
+        The other.
+    sizes : (u,) float64
+        Written: squared length of the rows.
+    """
+    for i in range(rest.shape[0]):
+        size = 0.0
+        for c in range(rest.shape[1]):
+            value = rest[i, c] - q[i] * part[c]
+            rest[i, c] = value
+            size += value * value
+        sizes[i] = size
 
 
 def first_four(plane: Plane, q: FloatArray, X: FloatArray) -> IntArray:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.linalg import lstsq
+from scipy.linalg import lstsq, lu_factor, lu_solve
 
 from tempose._validate import as_floats
 from tempose.signals.pose.basis import SiteBasis, best_anchors, plane_of
+from tempose.signals.pose.merging import merge_places
 from tempose.signals.pose.signal import PoseSignal
 from tempose.typing import FloatArray
 
@@ -60,6 +61,31 @@ def fit_pose_signal(
     coefficients = _solve(columns, root * X)
     coefficients += _solve(columns, root * X - columns @ coefficients)
     return basis.signal(coefficients)
+
+
+def interpolating_pose_signal(P: FloatArray, X: FloatArray) -> PoseSignal:
+    """Return the thin-plate spline through all places: l = n of the paper.
+
+    Parameters
+    ----------
+    P : (n, 2) float
+        Places in the pose plane; frames at one place are averaged.
+    X : (n, m) float
+        Shape coordinates there.
+
+    Returns
+    -------
+    PoseSignal
+        What `order_sites` gives for all sites, by one square system.
+    """
+    places = merge_places(P, X)
+    plane = plane_of(places.positions)
+    q = plane(places.positions)
+    anchors = best_anchors(plane, q)
+    order = np.concatenate([anchors, np.delete(np.arange(len(q)), anchors)])
+    basis = SiteBasis(plane, q[anchors], q[order[len(anchors) :]])
+    factor = lu_factor(basis.columns(q[order]), check_finite=False)
+    return basis.signal(lu_solve(factor, places.values[order], check_finite=False))
 
 
 def _solve(A: FloatArray, B: FloatArray) -> FloatArray:

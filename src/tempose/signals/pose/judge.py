@@ -8,7 +8,7 @@ import numpy as np
 
 from tempose.curves import Spline, interpolating_spline, monotone_map
 from tempose.signals.pose.crossings import find_crossings
-from tempose.signals.pose.sites import order_sites
+from tempose.signals.pose.fit import interpolating_pose_signal
 from tempose.signals.pose.transitions import PlaceMap, Transitions, find_bad_transitions
 from tempose.typing import FloatArray
 
@@ -65,7 +65,7 @@ def judge_layout(
     places, values = P, X
     if middles is not None and len(middles):
         places, values = np.concatenate([P, curve(middles)]), np.concatenate([X, path(middles)])
-    transitions = find_bad_transitions(order_sites(places, values).signal(), curve, X, path=path)
+    transitions = find_bad_transitions(interpolating_pose_signal(places, values), curve, X, path=path)
     return Judgement(name, P, transitions, aspect_ratio(P), len(find_crossings(P)), stress)
 
 
