@@ -47,7 +47,7 @@ class MeshPoisson:
         self._factor = SparseCholesky(L + sp.diags_array(held)).factor
         self._row = self._factor.permutation
         self.rows = self._row[rest.corners].ravel()
-        self.pull = padded(corner_pulls(rest, weights))
+        self.pull = corner_pulls(rest, weights)
         self.centre_weights = _centre_weights(V, F, self.component)
         self.n = n
 
@@ -139,19 +139,3 @@ def _centre_weights(V: FloatArray, F: IntArray, component: IntArray) -> FloatArr
     # a vertex without area counts where its whole piece has none
     areas = areas + 1e-12 * areas.mean()
     return areas / np.bincount(component, areas)[component]
-
-
-def padded(rows: FloatArray) -> FloatArray:
-    """Lay rows end to end, and three numbers more, so that vector registers may read past the end.
-
-    Parameters
-    ----------
-    rows : (k, m) float
-        Rows.
-
-    Returns
-    -------
-    (k m + 3,) ndarray
-        The numbers, then ones.
-    """
-    return np.concatenate([rows.ravel(), np.ones(3)])

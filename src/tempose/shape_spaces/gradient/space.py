@@ -7,13 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from tempose._validate import as_floats, as_indices
-from tempose.rotations import polar_rotation
+from tempose._validate import as_floats
 from tempose.shape_spaces.gradient.branches import follow_path
-from tempose.shape_spaces.gradient.decode_kernels import decode_faces
-from tempose.shape_spaces.gradient.encode_kernels import encode_faces, turn_faces
-from tempose.shape_spaces.gradient.poisson import MeshPoisson, padded
-from tempose.shape_spaces.gradient.rest_faces import RestFaces, rest_faces
+from tempose.shape_spaces.gradient.faces import FaceGradients
+from tempose.shape_spaces.gradient.references import as_axes, reference_frames
 from tempose.typing import FloatArray, IntArray
 
 TOGETHER = 16
@@ -66,41 +63,18 @@ class GradientSpace:
     name: ClassVar[str] = "gradient"
 
     def __init__(self, rest: FloatArray, faces: IntArray, references: FloatArray | None = None) -> None:
-        rest = as_floats(rest, "rest", ("n", 3))
-        faces = as_indices(faces, "faces", ("m", 3), limit=len(rest))
-        if len(faces) == 0:
-            raise ValueError("faces must hold at least one face, got none")
-        self.rest, self.faces, self.n_vertices = rest, faces, len(rest)
-        described = rest_faces(rest, faces)
+        self.gradients = FaceGradients(rest, faces)
+        n_faces = self.gradients.n_faces
         if references is None:
-            references = np.broadcast_to(np.eye(3), (len(faces), 3, 3))
-        self.references = as_floats(references, "references", (len(faces), 3, 3))
-        frames = np.einsum("mij,ajm->aim", self.references, described.frames)
-        self._frames = padded(frames)
-        self._corners, self._inverse = 3 * described.corners.ravel(), described.inverse.ravel()
-        self._scale = np.sqrt(described.shares)
-        self._weigh = padded(1 / self._scale)
-        self._poisson = MeshPoisson(rest, faces, described)
-        self.flat = described.flat
-        self._set_places(described)
-
-    def _set_places(self, described: RestFaces) -> None:
-        poisson = self._poisson
-        self._centres = np.zeros((poisson.n_components, 3))
-        poisson.centres(self.rest.ravel(), self._centres)
-        shares = np.bincount(poisson.component[described.corners[0]], self._scale**2, poisson.n_components)
-        # a vertex without faces counts as one of n
-        shares = np.maximum(shares, 1 / self.n_vertices)
-        shares /= shares.sum()
-        weights = poisson.centre_weights * shares[poisson.component]
-        away = self.rest - weights @ self.rest
-        radius = np.sqrt(weights @ (away**2).sum(axis=1))
-        self._place_scale = np.sqrt(shares)[:, None] / radius
+            references = np.tile(np.eye(3), (n_faces, 1, 1))
+        self.references = as_floats(references, "references", (n_faces, 3, 3))
+        self._frames = self.gradients.frames(self.references)
+        self.n_vertices = self.gradients.n_vertices
 
     @property
     def dimension(self) -> int:
         """Length d of a vector."""
-        return 9 * len(self.faces) + 3 * self._poisson.n_components
+        return 9 * self.gradients.n_faces + 3 * self.gradients.n_pieces
 
     def encode(self, V: FloatArray) -> FloatArray:
         """Measure rotation and stretch of every face; rotations by at most half a turn.
@@ -124,16 +98,8 @@ class GradientSpace:
         frames = V.reshape(-1, *V.shape[-2:])
         z = np.zeros((len(frames), self.dimension))
         for t in range(len(frames)):
-            self._encode_frame(frames[t], z[t])
+            self.gradients.encode(frames[t], self._frames, z[t])
         return z.reshape(*V.shape[:-2], self.dimension)
-
-    def _encode_frame(self, V: FloatArray, z: FloatArray) -> None:
-        V = as_floats(V, "V", (self.n_vertices, 3)).ravel()
-        places = self._places(z)
-        encode_faces(V, self._corners, self._inverse, self._frames, self._scale, z)
-        self._poisson.centres(V, places)
-        places -= self._centres
-        places *= self._place_scale
 
     def encode_path(self, V: FloatArray, after: FloatArray | None = None) -> FloatArray:
         """Measure the frames of a clip; rotations go on from frame to frame, past half a turn too.
@@ -159,11 +125,10 @@ class GradientSpace:
         z = self.encode(V)
         if z.ndim != 2:
             raise ValueError(f"V must have shape (T, {self.n_vertices}, 3), got {np.shape(V)}")
-        m = len(self.faces)
-        w = z[:, : 3 * m].reshape(-1, 3, m)
+        m = self.gradients.n_faces
         if after is not None:
             after = as_floats(after, "after", (self.dimension,))[: 3 * m].reshape(3, m)
-        follow_path(w, self._weigh, after)
+        follow_path(z[:, : 3 * m].reshape(-1, 3, m), self.gradients.weigh, after)
         return z
 
     def decode(self, z: FloatArray) -> FloatArray:
@@ -188,22 +153,9 @@ class GradientSpace:
         rows = np.ascontiguousarray(as_floats(z.reshape(-1, z.shape[-1]), "z", ("T", self.dimension)))
         out = np.zeros((len(rows), self.n_vertices, 3))
         for t in range(0, len(rows), TOGETHER):
-            self._decode_frames(rows[t : t + TOGETHER], out[t : t + TOGETHER])
+            block = slice(t, t + TOGETHER)
+            self.gradients.decode(rows[block], [self._frames] * len(rows[block]), out[block])
         return out.reshape(*z.shape[:-1], self.n_vertices, 3)
-
-    def _decode_frames(self, z: FloatArray, out: FloatArray) -> None:
-        poisson = self._poisson
-        X = poisson.sides(len(z))
-        columns, wide = X.reshape(-1), X.shape[1]
-        to = np.zeros((len(z), poisson.n_components, 3))
-        for t, row in enumerate(z):
-            decode_faces(row, self._frames, self._weigh, poisson.pull, poisson.rows, 3 * t, wide, columns)
-            to[t] = self._centres + self._places(row) / self._place_scale
-        poisson.solve(X, to, out)
-
-    def _places(self, z: FloatArray) -> FloatArray:
-        """Places of the pieces (c, 3) of one vector, a view."""
-        return z[9 * len(self.faces) :].reshape(-1, 3)
 
     def state(self) -> dict[str, FloatArray]:
         """Return what `from_state` needs.
@@ -213,8 +165,8 @@ class GradientSpace:
         dict of str to ndarray
             ``rest``, ``faces`` and ``references``, all as float64.
         """
-        faces = self.faces.astype(np.float64)
-        return {"rest": self.rest, "faces": faces, "references": np.ascontiguousarray(self.references)}
+        faces = self.gradients.faces.astype(np.float64)
+        return {"rest": self.gradients.rest, "faces": faces, "references": self.references}
 
     @classmethod
     def from_state(cls, state: Mapping[str, FloatArray]) -> GradientSpace:
@@ -258,14 +210,5 @@ class GradientSpace:
         space = cls(rest, faces)
         if frames is None or len(frames) == 0:
             return space
-        return cls(rest, faces, space._mean_rotations(frames))
-
-    def _mean_rotations(self, frames: FloatArray) -> FloatArray:
-        total, turned = np.zeros(self._frames.shape), np.zeros(self._frames.shape)
-        for frame in frames:
-            V = as_floats(frame, "frames", (self.n_vertices, 3)).ravel()
-            turn_faces(V, self._corners, self._inverse, self._frames, turned)
-            total += turned
-        # of the sum of R B, B the axes at rest, the nearest rotation is M B
-        axes = polar_rotation(total[:-3].reshape(3, 3, -1).transpose(2, 1, 0))
-        return axes @ self._frames[:-3].reshape(3, 3, -1).transpose(2, 0, 1)
+        turned = as_axes(reference_frames(space.gradients, frames))
+        return cls(rest, faces, turned @ as_axes(space._frames).transpose(0, 2, 1))

@@ -1,0 +1,150 @@
+"""What spaces of face deformations share: faces at rest, the factor, and where pieces are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tempose._validate import as_floats, as_indices
+from tempose.shape_spaces.gradient.decode_kernels import decode_faces
+from tempose.shape_spaces.gradient.encode_kernels import encode_faces, turn_faces
+from tempose.shape_spaces.gradient.poisson import MeshPoisson
+from tempose.shape_spaces.gradient.rest_faces import rest_faces
+from tempose.typing import FloatArray, IntArray
+
+
+class FaceGradients:
+    """Measure the deformation of every face of a mesh against frames, and rebuild the mesh.
+
+    A vector begins with 9 rows of m numbers: rotation vector relative to the frame, stretch less the identity
+    (xx, yy, zz, xy, xz, yz); it ends with the place of every connected piece.
+
+    Parameters
+    ----------
+    rest : (n, 3) float
+        Rest vertices, metres.
+    faces : (m, 3) int
+        Faces; some may be degenerate.
+
+    Raises
+    ------
+    ValueError
+        If there are no faces, none has an area, or an index or a shape is wrong.
+    """
+
+    def __init__(self, rest: FloatArray, faces: IntArray) -> None:
+        self.rest = as_floats(rest, "rest", ("n", 3))
+        self.faces = as_indices(faces, "faces", ("m", 3), limit=len(self.rest))
+        if len(self.faces) == 0:
+            raise ValueError("faces must hold at least one face, got none")
+        self.shape = rest_faces(self.rest, self.faces)
+        self.n_vertices, self.n_faces = len(self.rest), len(self.faces)
+        self.scale = np.sqrt(self.shape.shares)
+        self.weigh = padded(1 / self.scale)
+        self._corners, self._inverse = 3 * self.shape.corners.ravel(), self.shape.inverse.ravel()
+        self._poisson = MeshPoisson(self.rest, self.faces, self.shape)
+        self._pull = padded(self._poisson.pull)
+        self.n_pieces = self._poisson.n_components
+        self._set_places()
+
+    def _set_places(self) -> None:
+        poisson = self._poisson
+        self._centres = np.zeros((self.n_pieces, 3))
+        poisson.centres(self.rest.ravel(), self._centres)
+        shares = np.bincount(poisson.component[self.shape.corners[0]], self.shape.shares, self.n_pieces)
+        # a vertex without faces counts as one of n
+        shares = np.maximum(shares, 1 / self.n_vertices)
+        shares /= shares.sum()
+        weights = poisson.centre_weights * shares[poisson.component]
+        away = self.rest - weights @ self.rest
+        radius = np.sqrt(weights @ (away**2).sum(axis=1))
+        self._place_scale = np.sqrt(shares)[:, None] / radius
+
+    def frames(self, rotations: FloatArray | None = None) -> FloatArray:
+        """Return the frames at rest, or turned.
+
+        Parameters
+        ----------
+        rotations : (m, 3, 3) float, optional
+            Rotation of every face.
+
+        Returns
+        -------
+        (9 m + 3,) ndarray
+            Rows: the components of the first axis, of the second and of the normal; then three ones.
+        """
+        frames = self.shape.frames
+        return padded(frames if rotations is None else np.einsum("mij,ajm->aim", rotations, frames))
+
+    def turned(self, V: FloatArray, frames: FloatArray, out: FloatArray) -> None:
+        """Find the frames of deformed faces.
+
+        Parameters
+        ----------
+        V : (n, 3) float
+            Vertices, metres.
+        frames : (9 m + 3,) ndarray
+            Frames to stay near to where a face has no area.
+        out : (9 m + 3,) ndarray
+            Written, but for the last three.
+        """
+        V = as_floats(V, "V", (self.n_vertices, 3)).ravel()
+        turn_faces(V, self._corners, self._inverse, frames, out)
+
+    def encode(self, V: FloatArray, frames: FloatArray, z: FloatArray) -> None:
+        """Write the faces and the places of one mesh.
+
+        Parameters
+        ----------
+        V : (n, 3) float
+            Vertices, metres.
+        frames : (9 m + 3,) ndarray
+            Frames from which rotations are counted.
+        z : (d,) ndarray
+            The first 9 m and the last 3 numbers a piece are written.
+        """
+        V = as_floats(V, "V", (self.n_vertices, 3)).ravel()
+        encode_faces(V, self._corners, self._inverse, frames, self.scale, z)
+        places = self._places(z)
+        self._poisson.centres(V, places)
+        places -= self._centres
+        places *= self._place_scale
+
+    def decode(self, z: FloatArray, frames: list[FloatArray], out: FloatArray) -> None:
+        """Rebuild meshes; those of one call are solved together.
+
+        Parameters
+        ----------
+        z : (T, d) float
+            Coordinates, C-contiguous.
+        frames : list of T (9 m + 3,) ndarray
+            Frames from which rotations are counted.
+        out : (T, n, 3) ndarray
+            Written: vertices, metres.
+        """
+        X = self._poisson.sides(len(z))
+        columns, wide = X.reshape(-1), X.shape[1]
+        to = np.zeros((len(z), self.n_pieces, 3))
+        for t, row in enumerate(z):
+            decode_faces(row, frames[t], self.weigh, self._pull, self._poisson.rows, 3 * t, wide, columns)
+            to[t] = self._centres + self._places(row) / self._place_scale
+        self._poisson.solve(X, to, out)
+
+    def _places(self, z: FloatArray) -> FloatArray:
+        """Places of the pieces (c, 3) of one vector, a view."""
+        return z[-3 * self.n_pieces :].reshape(-1, 3)
+
+
+def padded(rows: FloatArray) -> FloatArray:
+    """Lay rows end to end, and three ones more, so that vector registers may read past the end.
+
+    Parameters
+    ----------
+    rows : (..., m) float
+        Rows.
+
+    Returns
+    -------
+    (k + 3,) ndarray
+        All k numbers, then ones.
+    """
+    return np.concatenate([rows.ravel(), np.ones(3)])
