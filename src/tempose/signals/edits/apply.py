@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from tempose.signals.edits.files import read_table
 from tempose.signals.edits.operations import OPERATIONS
 from tempose.signals.signals import Signals
 
@@ -34,15 +33,8 @@ def load_edits(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
         If it cannot be opened.
     """
     path = Path(path)
-    toml = path.suffix.lower() == ".toml"
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        data: Any = tomllib.loads(text) if toml else json.loads(text)
-    except RecursionError:
-        raise ValueError(f"{path}: brackets are nested too deep for an edit list") from None
-    except ValueError as error:
-        raise ValueError(f"{path}: expected {'TOML' if toml else 'JSON'}: {error}") from None
-    if not isinstance(data, dict) or list(data) != ["operations"] or not isinstance(data["operations"], list):
+    data = read_table(path)
+    if list(data) != ["operations"] or not isinstance(data["operations"], list):
         raise ValueError(f'{path}: expected {{"operations": [...]}} and no other key')
     try:
         check_edits(data["operations"])
@@ -99,17 +91,25 @@ def apply_edits(
         If an operation cannot be applied; the message says which, counted from 0.
     """
     check_edits(operations)
-    for i, entry in enumerate(operations):
-        name, operation, arguments = _arguments(i, entry)
-        said: list[str] = []
+    i = 0
+    while i < len(operations):
+        name, operation, arguments = _arguments(i, operations[i])
+        here, said = f"operation {i} ({name})", list[str]()
+        i += 1
+        if operation.together is not None:
+            run = [arguments]
+            while i < len(operations) and operations[i]["op"] == name:
+                run.append(_arguments(i, operations[i])[2])
+                i += 1
+            arguments = operation.together(run)
         if operation.reads_files:
             arguments |= {"folder": Path(folder or "."), "notes": said}
         try:
             signals = operation.function(signals, **arguments)
         except (ValueError, OSError) as error:
-            raise ValueError(f"operation {i} ({name}): {error}") from error
+            raise ValueError(f"{here}: {error}") from error
         if notes is not None:
-            notes += [f"operation {i} ({name}): {note}" for note in said]
+            notes += [f"{here}: {note}" for note in said]
     return signals
 
 

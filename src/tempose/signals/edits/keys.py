@@ -189,3 +189,51 @@ def texts(value: Any, key: str) -> list[str]:
     if not isinstance(value, list) or not value or not all(isinstance(v, str) and v for v in value):
         raise ValueError(f'{key} must be a list of file names, ["1.obj", ...], got {value!r}')
     return value
+
+
+def flag(value: Any, key: str) -> bool:
+    """Check a truth value.
+
+    Parameters
+    ----------
+    value : object
+        From the file.
+    key : str
+        Its key.
+
+    Returns
+    -------
+    bool
+        The value.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    if not isinstance(value, bool):
+        raise ValueError(f"{key} must be true or false, got {value!r}")
+    return value
+
+
+def scale(value: Any, key: str) -> float | str:
+    """Check how many times as far something travels.
+
+    Parameters
+    ----------
+    value : object
+        From the file.
+    key : str
+        Its key.
+
+    Returns
+    -------
+    float or str
+        A number, or ``"size"``.
+
+    Raises
+    ------
+    ValueError
+        If it is neither.
+    """
+    return "size" if value == "size" else number(value, key)

@@ -9,7 +9,9 @@ from typing import Any
 from tempose.signals.edits import keys as check
 from tempose.signals.edits.bridge import blend, insert_curve
 from tempose.signals.edits.controls import insert_control, move_control, place_control
+from tempose.signals.edits.from_files import add_pose_from, replace_shape_from
 from tempose.signals.edits.keys import Check
+from tempose.signals.edits.layout import pin_frames, repair_transitions
 from tempose.signals.edits.pieces import close_loop, cut, keep, loop, paste, reverse
 from tempose.signals.edits.timing import retime, set_fps, set_speed
 from tempose.signals.signals import Signals
@@ -32,6 +34,8 @@ class Operation:
     """Keys that may be there."""
     reads_files: bool = False
     """Whether the function takes `folder`, where file names count from, and a list `notes` to add to."""
+    together: Callable[[list[dict[str, Any]]], dict[str, Any]] | None = None
+    """Makes the arguments of one call out of those of entries that follow one another directly."""
 
     def arguments(self, entry: Mapping[str, Any]) -> dict[str, Any]:
         """Check an entry and return the arguments of the function.
@@ -99,5 +103,25 @@ OPERATIONS: dict[str, Operation] = {
         set_speed, {**_SPAN, "factor": check.number}, "play a part faster or slower", {"ease": check.number}
     ),
     "fps": Operation(set_fps, {"value": check.number}, "frames played a second"),
+    "pin": Operation(
+        pin_frames,
+        {"frame": check.number, "at": check.place},
+        "give a frame its place in the plane; pins that follow one another directly hold together",
+        together=lambda run: {"pins": {entry["frame"]: entry["at"] for entry in run}},
+    ),
+    "repair": Operation(repair_transitions, {}, "lay the plane out anew where transitions are bad"),
+    "add_pose": Operation(
+        add_pose_from,
+        {"file": check.text, "at": check.place},
+        "give a sculpted mesh a place",
+        reads_files=True,
+    ),
+    "replace_shape": Operation(
+        replace_shape_from,
+        {"source": check.texts, "target": check.texts},
+        "play another mesh, by pairs of poses",
+        {"space": check.text, "use": check.whole, "ridge": check.number, "scale": check.scale},
+        reads_files=True,
+    ),
 }
 """Operation of each name, in the order in which the guide explains them."""
