@@ -14,6 +14,7 @@ from tempose.cli.demo import demo
 from tempose.cli.info import info
 from tempose.cli.pairs import pairs
 from tempose.cli.render import render
+from tempose.cli.signals import signals
 from tempose.cli.transfer import transfer
 
 app = typer.Typer(
@@ -24,6 +25,7 @@ app = typer.Typer(
 app.command()(demo)
 app.command()(transfer)
 app.command()(pairs)
+app.add_typer(signals)
 app.command()(info)
 app.command()(convert)
 app.command()(compare)
