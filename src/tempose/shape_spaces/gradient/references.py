@@ -40,11 +40,29 @@ def reference_frames(gradients: FaceGradients, frames: FloatArray) -> FloatArray
     if len(far) == 0:
         return mean
     axes = np.stack([_turned_axes(gradients, V, mean)[far] for V in frames])
-    middle = axes[_half_way(axes, gradients.shape.shares[far])]
-    better = _largest_angles(axes, middle) < _largest_angles(axes, as_axes(mean)[far])
     found = np.array(as_axes(mean))
-    found[far[better]] = middle[better]
+    found[far] = middle_rotations(axes, gradients.shape.shares[far])
     return padded(as_rows(found))
+
+
+def middle_rotations(axes: FloatArray, weights: FloatArray) -> FloatArray:
+    """Choose rotations from which those of paths differ least.
+
+    Parameters
+    ----------
+    axes : (T, k, 3, 3) float
+        k rotations in the order of time.
+    weights : (k,) float
+        How much each counts for where the middle of the way is.
+
+    Returns
+    -------
+    (k, 3, 3) ndarray
+        The mean of each, or its rotation half way where its unwrapped angles then stay smaller.
+    """
+    mean, middle = polar_rotation(axes.sum(axis=0)), axes[_half_way(axes, weights)]
+    better = _largest_angles(axes, middle) < _largest_angles(axes, mean)
+    return np.where(better[:, None, None], middle, mean)
 
 
 def as_axes(frames: FloatArray) -> FloatArray:

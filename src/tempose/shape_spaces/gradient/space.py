@@ -67,9 +67,12 @@ class GradientSpace:
         n_faces = self.gradients.n_faces
         if references is None:
             references = np.tile(np.eye(3), (n_faces, 1, 1))
-        self.references = as_floats(references, "references", (n_faces, 3, 3))
-        self._frames = self.gradients.frames(self.references)
         self.n_vertices = self.gradients.n_vertices
+        self._count_from(references)
+
+    def _count_from(self, references: FloatArray) -> None:
+        self.references = as_floats(references, "references", (self.gradients.n_faces, 3, 3))
+        self._frames = self.gradients.frames(self.references)
 
     @property
     def dimension(self) -> int:
@@ -211,4 +214,5 @@ class GradientSpace:
         if frames is None or len(frames) == 0:
             return space
         turned = as_axes(reference_frames(space.gradients, frames))
-        return cls(rest, faces, turned @ as_axes(space._frames).transpose(0, 2, 1))
+        space._count_from(turned @ as_axes(space._frames).transpose(0, 2, 1))
+        return space
