@@ -4,7 +4,7 @@ from tempose.metrics.acceleration import AccelerationRatio, accelerations, foot_
 from tempose.metrics.contacts import detect_contacts, velocities
 from tempose.metrics.directions import DirectionError, direction_angles, limb_direction_errors
 from tempose.metrics.distortion import Ratios, area_ratios, edge_ratios
-from tempose.metrics.errors import ClipErrors, compare
+from tempose.metrics.errors import ClipErrors, ErrorMeter, compare
 from tempose.metrics.flips import flipped_faces, flipped_percent, folded_percent
 from tempose.metrics.ground import Penetration, ground_depths, penetration
 from tempose.metrics.patches import patch_round
@@ -22,6 +22,7 @@ __all__ = [
     "ClipErrors",
     "DirectionError",
     "Enclosed",
+    "ErrorMeter",
     "Penetration",
     "Ratios",
     "accelerations",

@@ -82,17 +82,59 @@ def compare(V: FloatArray, V2: FloatArray, D: float) -> ClipErrors:
     V, V2 = check_clip(V, "V"), check_clip(V2, "V2")
     if V.shape != V2.shape:
         raise ValueError(f"V2 must have the shape {V.shape} of V, got {V2.shape}: frames or vertices differ")
-    D = _check_diagonal(D)
     T, n, _ = V.shape
-    squared, spread = 0.0, 0.0
-    distances = UpperTail(T * n, 99)
+    meter = ErrorMeter(T * n, D)
     for frames in block_slices(T, 3 * n):
-        a, b = block(V, frames, "V"), block(V2, frames, "V2")
-        squares = np.square(a - b).sum(axis=2)
-        squared += float(squares.sum())
-        spread += float(np.square(a - a.mean(axis=1, keepdims=True)).sum())
-        distances.add(np.sqrt(squares))
-    return _assemble(squared, spread, distances, n * T, D)
+        meter.add(block(V, frames, "V"), block(V2, frames, "V2"))
+    return meter.errors
+
+
+class ErrorMeter:
+    """Measures a clip that comes in blocks of frames; `compare` is this over two clips.
+
+    Parameters
+    ----------
+    count : int
+        How many vertices will come in all, over all frames.
+    D : float
+        Diagonal of the bounding box of the rest mesh.
+
+    Raises
+    ------
+    ValueError
+        If `D` is not positive.
+    """
+
+    def __init__(self, count: int, D: float) -> None:
+        self._count, self._D = count, _check_diagonal(D)
+        self._squared, self._spread = 0.0, 0.0
+        self._distances = UpperTail(count, 99)
+
+    def add(self, V: FloatArray, V2: FloatArray) -> FloatArray:
+        """Take in more frames.
+
+        Parameters
+        ----------
+        V : (k, n, 3) float
+            The next frames of the true clip.
+        V2 : (k, n, 3) float
+            Those of the clip to judge.
+
+        Returns
+        -------
+        (k,) ndarray
+            Mean squared distance of each frame.
+        """
+        squares = np.square(V - V2).sum(axis=2)
+        self._squared += float(squares.sum())
+        self._spread += float(np.square(V - V.mean(axis=1, keepdims=True)).sum())
+        self._distances.add(np.sqrt(squares))
+        return squares.mean(axis=1)
+
+    @property
+    def errors(self) -> ClipErrors:
+        """The measures of what has come in, once all of it has."""
+        return _assemble(self._squared, self._spread, self._distances, self._count, self._D)
 
 
 def _assemble(squared: float, spread: float, distances: UpperTail, count: int, D: float) -> ClipErrors:

@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Generator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tempose._validate import as_floats
-from tempose.clips import Mesh, MeshClip
+from tempose.clips import MeshClip
 from tempose.shape_spaces import ShapeSpace, VertexSpace, shape_space
-from tempose.signals import _standin
-from tempose.signals.fidelity import POSE_SHARE, SHAPE_SHARE, choose_controls, choose_sites
+from tempose.signals.fidelity import SHAPE_SHARE
+from tempose.signals.frames import ClipFrames, example_vertices
+from tempose.signals.notes import Notes
 from tempose.signals.options import FitOptions, check_pins
-from tempose.signals.pose.signal import PoseSignal
+from tempose.signals.placement import placement_spline
+from tempose.signals.plane import Goal, Plane, fit_plane, fit_time, turned
+from tempose.signals.pose.transitions import find_bad_transitions
 from tempose.signals.shape.fit import FittedShape, Percent, fit_examples, fit_shape, rescaled
+from tempose.signals.shape.streamed import fit_streamed_shape
 from tempose.signals.signals import Signals
 from tempose.signals.still import still_signals
-from tempose.signals.time.signal import TimeSignal
+from tempose.signals.time.path import time_path
 from tempose.typing import FloatArray, IntArray, Progress, silent
+
+LEAST_SHARE = 0.05
+"""Without a tolerance given, at most so much of a clip's own motion is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,18 +36,27 @@ class FittedClip:
     """h, g, f and the time spline."""
     shape: FittedShape
     """What h leaves out."""
-    positions: FloatArray
-    """(T, 2) places of the frames in the pose plane."""
-    site_frames: IntArray
-    """(l,) frames at whose places the sites of g stand."""
+    plane: Plane | None
+    """Places of the frames and g as it was fitted to them; None for a clip that does not move."""
     diagonal: float
     """D, metres."""
-    seconds: dict[str, float]
-    """Of every stage."""
-    warnings: list[str] = field(default_factory=list[str])
-    """Sentences for a person."""
-    facts: dict[str, Any] = field(default_factory=dict[str, Any])
-    """What else the stages found: the layout's name, the period."""
+    notes: Notes
+    """Seconds, warnings, facts."""
+
+    @property
+    def positions(self) -> FloatArray:
+        """(T, 2) places of the frames in the pose plane."""
+        return np.zeros((len(self.shape.X), 2)) if self.plane is None else self.plane.positions
+
+    @property
+    def site_frames(self) -> IntArray:
+        """(l,) frames at whose places the sites of g stand."""
+        return np.zeros(0, np.int64) if self.plane is None else self.plane.site_frames
+
+    @property
+    def pose_left_out(self) -> FloatArray:
+        """(T,) squared residual of g at the places of the frames."""
+        return np.zeros(len(self.shape.X)) if self.plane is None else self.plane.left_out
 
 
 def fit_clip(
@@ -78,171 +91,90 @@ def fit_clip(
     ValueError
         If the clip is too short, or k, l, m, a pin or the examples do not suit it.
     """
-    T = clip.n_frames
     Q = example_vertices(examples, clip.mesh)
-    options.check_frames(T, None if Q is None else len(Q) - 1)
-    pins = check_pins(pins, T)
-    fit = _Fit(clip, options, pins, progress)
-    with fit.stage("encode"):
-        space, Z = fit.encoded(Q)
-    with fit.stage("shape"):
-        shape = fit.shaped(space, Z, Q)
+    options.check_frames(clip.n_frames, None if Q is None else len(Q) - 1)
+    pins = check_pins(pins, clip.n_frames)
+    notes = Notes(progress)
+    with notes.stage("frames"):
+        frames = ClipFrames.of(clip, options.placement, progress)
+    shape, limit = _fit_shape(frames, options, Q, notes)
+    placement = None if frames.placements is None else placement_spline(frames.placements)
     if shape.X.shape[1] == 0:
-        return fit.still(shape)
-    with fit.stage("layout"):
-        P = fit.laid_out(shape)
-    with fit.stage("pose"):
-        pose, sites = fit.posed(P, shape)
-    with fit.stage("time"):
-        f = fit.timed(P, pose, shape)
-        path = _standin.path(shape.X) if options.between == "path" else None
-    signals = Signals(shape.shape, _unturned(pose, shape), f, path, None, (), clip.fps, clip.fps, clip.mesh)
-    return FittedClip(signals, shape, P, sites, fit.diagonal, fit.seconds, fit.warnings, fit.facts)
+        signals = still_signals(shape.shape, clip, placement)
+        _note_stillness(shape, notes)
+        return FittedClip(signals, shape, None, frames.diagonal, notes)
+    goal = _goal(shape, limit)
+    plane = fit_plane(shape.straight, options, pins, goal, notes)
+    f, pose = fit_time(plane, shape.straight, options, goal, notes)
+    path = time_path(shape.X, _period(options)) if options.between == "path" else None
+    g: Any = turned(pose, shape.turn)
+    signals = Signals(shape.shape, g, f, path, placement, (), clip.fps, clip.fps, clip.mesh)
+    _note_transitions(signals, shape.X, notes)
+    return FittedClip(signals, shape, plane, frames.diagonal, notes)
 
 
-class _Fit:
-    """One fit on its way: what every stage reads, and the notes it leaves."""
-
-    def __init__(
-        self, clip: MeshClip, options: FitOptions, pins: dict[int, FloatArray], progress: Progress
-    ) -> None:
-        self.clip, self.options, self.pins, self.progress = clip, options, pins, progress
-        self.V: FloatArray = np.asarray(clip.vertices, dtype=np.float64)
-        self.diagonal = clip_diagonal(clip)
-        self.unit = 100.0 / (self.diagonal * np.sqrt(self.V.shape[0] * max(self.V.shape[1], 1)))
-        self.limit = options.percent
-        self.seconds: dict[str, float] = {}
-        self.warnings: list[str] = []
-        self.facts: dict[str, Any] = {}
-
-    @contextmanager
-    def stage(self, name: str) -> Generator[None, None, None]:
-        self.progress(len(self.seconds), 5, name)
-        start = time.perf_counter()
-        yield
-        self.seconds[name] = time.perf_counter() - start
-
-    def encoded(self, Q: FloatArray | None) -> tuple[ShapeSpace, FloatArray]:
-        frames = self.V if Q is None else np.concatenate([self.V, Q])
-        space = shape_space(self.options.space, self.clip.rest, self.clip.faces, frames)
-        return space, space.encode_path(self.V)
-
-    def shaped(self, space: ShapeSpace, Z: FloatArray, Q: FloatArray | None) -> FittedShape:
-        check = None if isinstance(space, VertexSpace) else self.percent(space)
-        if Q is None:
-            m = self.options.m
-            if m is None and self.options.tolerance is None:
-                self.limit = min(self.limit, 0.05 * self.motion())
-            fitted = fit_shape(space, Z, m, SHAPE_SHARE * self.limit, self.unit, check)
-            if m is not None and fitted.X.shape[1] < m:
-                self.warnings.append(f"m {m} was asked for; the frames span {fitted.X.shape[1]} dimensions")
-            return fitted
-        fitted = fit_examples(space, Z, space.encode(Q), self.unit)
-        return fitted if check is None else rescaled(fitted, check)
-
-    def motion(self) -> float:
-        """Rms percent of the diagonal by which vertices move about their means."""
-        return self.unit * float(np.linalg.norm(self.V - self.V.mean(axis=0)))
-
-    def percent(self, space: ShapeSpace) -> Percent:
-        def measure(Z: FloatArray, frames: IntArray) -> float:
-            off = space.decode(Z) - self.V[frames]
-            return 100.0 / self.diagonal * float(np.sqrt(np.square(off).sum() / (off.size / 3)))
-
-        return measure
-
-    def still(self, shape: FittedShape) -> FittedClip:
-        """One pose for the whole clip: it does not move, or by less than the tolerance."""
-        left = float(shape.percent(shape.left_out.sum()))
-        if left > 0:
-            self.warnings.append(
-                f"the motion is {left:.3g} % of the diagonal, within the tolerance: one pose stands for all"
-            )
-        signals = still_signals(shape.shape, self.clip.n_frames, self.clip.fps, self.clip.mesh)
-        P, sites = np.zeros((self.clip.n_frames, 2)), np.zeros(0, np.int64)
-        return FittedClip(signals, shape, P, sites, self.diagonal, self.seconds, self.warnings, self.facts)
-
-    def laid_out(self, shape: FittedShape) -> FloatArray:
-        return _standin.layout(shape.straight, {k: (p[0], p[1]) for k, p in self.pins.items()})
-
-    def posed(self, P: FloatArray, shape: FittedShape) -> tuple[PoseSignal, IntArray]:
-        order = _standin.Order(P, shape.straight)
-        l = self.options.l
-        if l is None:
-            l = choose_sites(order.errors, self.base(shape), self.allowed(shape, POSE_SHARE))
-        return order.signal(l), np.unique(np.linspace(0, len(P) - 1, l).round().astype(int))
-
-    def timed(self, P: FloatArray, pose: PoseSignal, shape: FittedShape) -> TimeSignal:
-        X, base, T = shape.straight, self.base(shape), len(P)
-        k = self.options.k
-
-        def error(k: int) -> float:
-            f = _standin.fit_time(P, k)
-            return base + float(np.square(pose(f(np.arange(T))) - X).sum())
-
-        if k is None:
-            k, _ = choose_controls(error, T, self.allowed(shape, 1.0), self.progress)
-        return _standin.fit_time(P, k)
-
-    def base(self, shape: FittedShape) -> float:
-        """Squared sum that h leaves out; examples are chosen by the user, so g and f are judged without."""
-        return float(shape.left_out.sum()) if shape.turn is None else 0.0
-
-    def allowed(self, shape: FittedShape, share: float) -> float:
-        """Largest squared sum in the shape space for a share of the tolerance."""
-        return (share * self.limit / shape.scale) ** 2 if shape.scale > 0 else np.inf
+def _fit_shape(
+    frames: ClipFrames, options: FitOptions, Q: FloatArray | None, notes: Notes
+) -> tuple[FittedShape, float]:
+    """Fit the shape signal; also return the tolerance it was held to."""
+    clip, limit = frames.clip, options.percent
+    if frames.long and options.space == "vertex" and Q is None:
+        with notes.stage("shape"):
+            space = VertexSpace(len(clip.rest))
+            return fit_streamed_shape(space, frames, options.m, SHAPE_SHARE * limit, notes.progress), limit
+    V = frames.block(slice(None))
+    if options.tolerance is None:
+        limit = min(limit, LEAST_SHARE * frames.percent * float(np.linalg.norm(V - V.mean(axis=0))))
+    with notes.stage("encode"):
+        known = V if Q is None else np.concatenate([V, Q])
+        space = shape_space(options.space, clip.rest, clip.faces, known)
+        Z = space.encode_path(V)
+        E = None if Q is None else space.encode(Q)
+    with notes.stage("shape"):
+        check = None if isinstance(space, VertexSpace) else _decoded_percent(space, V, frames.diagonal)
+        if E is None:
+            shape = fit_shape(space, Z, options.m, SHAPE_SHARE * limit, frames.percent, check)
+        else:
+            shape = fit_examples(space, Z, E, frames.percent)
+            shape = shape if check is None else rescaled(shape, check)
+    if options.m is not None and shape.X.shape[1] < options.m:
+        notes.warnings.append(f"m {options.m} was asked for; the frames span {shape.X.shape[1]} dimensions")
+    return shape, limit
 
 
-def _unturned(pose: PoseSignal, shape: FittedShape) -> PoseSignal:
-    """Take a pose signal fitted in an orthonormal basis to the shape coordinates."""
-    if shape.turn is None:
-        return pose
-    back = np.linalg.inv(shape.turn)
-    return PoseSignal(pose.sites, pose.weights @ back, pose.affine @ back, pose.centre, pose.radius)
+def _decoded_percent(space: ShapeSpace, V: FloatArray, diagonal: float) -> Percent:
+    def measure(Z: FloatArray, which: IntArray) -> float:
+        off = space.decode(Z) - V[which]
+        return 100.0 / diagonal * float(np.sqrt(np.square(off).sum() * 3 / max(off.size, 1)))
+
+    return measure
 
 
-def clip_diagonal(clip: MeshClip) -> float:
-    """Return the D of tolerances.
-
-    Parameters
-    ----------
-    clip : MeshClip
-        Any clip.
-
-    Returns
-    -------
-    float
-        Metres: of the rest mesh, of all frames where that is a point, 1 where those are too.
-    """
-    extent = np.ptp(np.asarray(clip.vertices).reshape(-1, 3), axis=0) if clip.vertices.size else np.zeros(3)
-    return clip.mesh.diagonal or float(np.linalg.norm(extent)) or 1.0
+def _goal(shape: FittedShape, limit: float) -> Goal:
+    # examples are the user's choice: what they leave out is not held against g and f
+    base = float(shape.left_out.sum()) if shape.turn is None else 0.0
+    return Goal(base, (limit / shape.scale) ** 2 if shape.scale > 0 else np.inf)
 
 
-def example_vertices(examples: Any, mesh: Mesh) -> FloatArray | None:
-    """Check example poses.
+def _period(options: FitOptions) -> float | None:
+    return None if options.period in (None, "auto") else float(options.period)
 
-    Parameters
-    ----------
-    examples : (e, n, 3) float, sequence of Mesh, or None
-        Poses of the mesh.
-    mesh : Mesh
-        The mesh of the clip.
 
-    Returns
-    -------
-    (e, n, 3) ndarray or None
-        Their vertices.
+def _note_stillness(shape: FittedShape, notes: Notes) -> None:
+    left = float(shape.percent(shape.left_out.sum()))
+    if left > 0:
+        notes.warnings.append(
+            f"the motion is {left:.3g} % of the diagonal, within the tolerance: one pose for all frames"
+        )
 
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, or one has another number of vertices.
-    """
-    if examples is None:
-        return None
-    n = len(mesh.vertices)
-    rows = [e.vertices if isinstance(e, Mesh) else e for e in examples]
-    Q = [as_floats(row, f"examples[{i}]", (n, 3)) for i, row in enumerate(rows)]
-    if len(Q) < 2:
-        raise ValueError(f"examples must hold two poses or more, got {len(Q)}")
-    return np.stack(Q)
+
+def _note_transitions(signals: Signals, X: FloatArray, notes: Notes) -> None:
+    found = find_bad_transitions(signals.pose, signals.time, X, path=signals.path)
+    bad = np.flatnonzero(found.bad)
+    notes.facts["transitions"] = {"bad": bad.tolist(), "worst": found.worst, "limit": found.limit}
+    if len(bad):
+        notes.warnings.append(
+            f"{len(bad)} of {len(found.deviation)} transitions of g(f(t)) stray from the smooth motion, by "
+            f"up to {found.worst:.2g} steps, first after frame {bad[0]}"
+            + ("; playback follows the smooth motion, edits there may not" if signals.path else "")
+        )

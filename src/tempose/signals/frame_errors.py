@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.clips import MeshClip
 from tempose.signals.fitting import FittedClip
-from tempose.signals.sampling import sample
 from tempose.signals.shape.fit import FittedShape
 from tempose.typing import FloatArray
 
 
-def frame_errors(clip: MeshClip, fitted: FittedClip) -> dict[str, list[float]]:
+def frame_errors(fitted: FittedClip, played: FloatArray) -> dict[str, list[float]]:
     """Measure the error of every frame.
 
     Parameters
     ----------
-    clip : MeshClip
-        T frames.
     fitted : FittedClip
-        Its signals.
+        Signals of a clip of T frames.
+    played : (T,) float
+        Mean squared distance of each frame to what is played, square metres.
 
     Returns
     -------
@@ -28,22 +26,17 @@ def frame_errors(clip: MeshClip, fitted: FittedClip) -> dict[str, list[float]]:
         ``h(g(f(t)))``, and ``played``, measured at the vertices. The mean square of a row over the frames
         is the square of its entry in the budget.
     """
-    shape, signals, T = fitted.shape, fitted.signals, clip.n_frames
+    shape, signals, T = fitted.shape, fitted.signals, len(played)
     ticks = np.arange(T, dtype=np.float64)
-
-    def with_pose(P: FloatArray) -> FloatArray:
-        off = shape.X - signals.pose(P, ticks)
-        return shape.left_out + np.square(off if shape.turn is None else off @ shape.turn).sum(axis=1)
-
+    off = shape.X - signals.pose(signals.time(ticks), ticks)
+    on_curve = np.square(off if shape.turn is None else off @ shape.turn).sum(axis=1)
     squares = {
         "h": shape.left_out,
-        "hg": with_pose(fitted.positions),
-        "hgf": with_pose(signals.time(ticks)),
+        "hg": shape.left_out + fitted.pose_left_out,
+        "hgf": shape.left_out + on_curve,
     }
     rows = {name: shape.percent(T * value).tolist() for name, value in squares.items()}
-    played = sample(signals, ticks / clip.fps, dtype=np.float64)
-    off = np.square(played - np.asarray(clip.vertices, dtype=np.float64)).sum(axis=2).mean(axis=1)
-    return {**rows, "played": (100 / fitted.diagonal * np.sqrt(off)).tolist()}
+    return {**rows, "played": (100 / fitted.diagonal * np.sqrt(played)).tolist()}
 
 
 def scree(shape: FittedShape) -> list[float]:

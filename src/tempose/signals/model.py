@@ -12,16 +12,13 @@ import numpy as np
 
 from tempose.clips import MeshClip
 from tempose.clips.source import Source
-from tempose.models import load_model, save_model
 from tempose.signals.fitting import fit_clip
+from tempose.signals.model_file import read_signal_model, write_signal_model
 from tempose.signals.options import FitOptions
 from tempose.signals.report import fit_report
 from tempose.signals.sampling import sample, sample_blocks
-from tempose.signals.saving import from_arrays, to_arrays
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray, IntArray, Progress, silent
-
-KIND = "signals"
 
 
 class SignalModel:
@@ -51,7 +48,7 @@ class SignalModel:
         Whether where the body is and which way it turns is split off as a fourth signal.
     period : float, "auto" or None
         Frames after which a cyclic clip repeats; ``"auto"`` looks for them.
-    window : int, default 400
+    window : int, default 300
         Clips of more frames get pose signals of so many frames each, joined smoothly.
 
     Attributes
@@ -94,7 +91,7 @@ class SignalModel:
         layout: str = "auto",
         placement: bool = False,
         period: float | str | None = "auto",
-        window: int = 400,
+        window: int = 300,
     ) -> None:
         self.space, self.tolerance, self.k, self.l, self.m = space, tolerance, k, l, m
         self.between, self.layout, self.placement = between, layout, placement
@@ -343,17 +340,8 @@ class SignalModel:
         OSError
             If the place cannot be written.
         """
-        arrays: dict[str, FloatArray] = {}
-        parts = {"signals": self._fitted(), "positions": self.positions_, "sites": self.site_frames_}
-        tree = {name: to_arrays(part, name, arrays) for name, part in parts.items()}
-        header = {
-            "options": asdict(self.options),
-            "report": self.report_,
-            "edits": list(self.edits_),
-            "made_from": asdict(self.source_),
-            "tree": tree,
-        }
-        return save_model(path, KIND, arrays, header)
+        self._fitted()
+        return write_signal_model(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> SignalModel:
@@ -376,27 +364,13 @@ class SignalModel:
         ValueError
             If it is cut short, no model of signals, or of a newer version; the message names it.
         """
-        arrays, header = load_model(path, KIND)
-        try:
-            model = cls(**header["options"])
-            parts = {name: from_arrays(tree, arrays) for name, tree in header["tree"].items()}
-            model.signals_ = _checked(parts["signals"])
-            model.positions_, model.site_frames_ = parts["positions"], parts["sites"]
-            model.report_, model.edits_ = header["report"], tuple(header["edits"])
-            made_from = header["made_from"]
-            lists = {key: tuple(made_from[key]) for key in ("guessed", "notes")}
-            model.source_ = Source(**{**made_from, **lists})
-        except (KeyError, TypeError, ValueError) as error:
-            raise ValueError(f"{path}: a model of signals whose parts do not fit: {error}") from None
+        options, state = read_signal_model(path)
+        model = cls(**options)
+        for name, value in state.items():
+            setattr(model, name, value)
         return model
 
     def _fitted(self) -> Signals:
         if not hasattr(self, "signals_"):
             raise ValueError("the model has no signals yet: call fit(clip), or load a file")
         return self.signals_
-
-
-def _checked(signals: Any) -> Signals:
-    if not isinstance(signals, Signals):
-        raise ValueError(f"expected Signals, found {type(signals).__name__}")
-    return signals

@@ -38,14 +38,20 @@ def sample_blocks(
         Which of the times.
     vertices : (k, n, 3) ndarray
         Positions there, metres.
+
+    Raises
+    ------
+    ValueError
+        If a time is not finite.
     """
-    step = max(1, BLOCK_VALUES // max(signals.shape.space.dimension, 1))
-    for start in range(0, len(times), step):
-        where = slice(start, min(start + step, len(times)))
+    times = as_floats(times, "times", ("K",))
+    for where in _blocks(signals, len(times)):
         yield where, evaluate(signals, times[where], dtype)
 
 
-def evaluate(signals: Signals, times: FloatArray, dtype: Any = np.float32) -> FloatArray:
+def evaluate(
+    signals: Signals, times: FloatArray, dtype: Any = np.float32, out: FloatArray | None = None
+) -> FloatArray:
     """Evaluate signals at a few times at once.
 
     Parameters
@@ -56,14 +62,28 @@ def evaluate(signals: Signals, times: FloatArray, dtype: Any = np.float32) -> Fl
         Seconds.
     dtype : dtype, default float32
         Of the vertices.
+    out : (..., n, 3) array, optional
+        Where to write; then its type counts.
 
     Returns
     -------
     (..., n, 3) ndarray
         Positions, metres.
     """
-    V = signals.shape.vertices(signals.coordinates(times))
-    return placed(V, signals.placement, signals.ticks(times)).astype(dtype, copy=False)
+    x = signals.coordinates(times)
+    if signals.placement is None:
+        return signals.shape.vertices(x, dtype, out)
+    V = placed(signals.shape.vertices(x), signals.placement, signals.ticks(times))
+    if out is None:
+        return V.astype(dtype, copy=False)
+    out[...] = V
+    return out
+
+
+def _blocks(signals: Signals, count: int) -> Iterator[slice]:
+    step = max(1, BLOCK_VALUES // max(signals.shape.space.dimension, 1))
+    for start in range(0, count, step):
+        yield slice(start, min(start + step, count))
 
 
 def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np.float32) -> FloatArray:
@@ -100,8 +120,8 @@ def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np
         raise ValueError(f"out must have shape (K, {shape[-2]}, 3) for K times, got {out.shape}")
     else:
         rows = out
-    for where, vertices in sample_blocks(signals, flat, rows.dtype):
-        rows[where] = vertices
+    for where in _blocks(signals, len(flat)):
+        evaluate(signals, flat[where], out=rows[where])
     return rows.reshape(shape) if out is None else out
 
 

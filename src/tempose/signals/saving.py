@@ -17,11 +17,24 @@ from tempose.signals.shape.signal import ShapeSignal
 from tempose.signals.signals import Signals
 from tempose.signals.time.origin import Origin
 from tempose.signals.time.signal import TimeSignal
+from tempose.signals.windows import Cover, WindowedPose
 from tempose.typing import FloatArray
 
 CLASSES: dict[str, type[Any]] = {
     c.__name__: c
-    for c in (Mesh, MonotoneMap, Origin, PoseSignal, ShapeSignal, Signals, Source, Spline, TimeSignal)
+    for c in (
+        Cover,
+        Mesh,
+        MonotoneMap,
+        Origin,
+        PoseSignal,
+        ShapeSignal,
+        Signals,
+        Source,
+        Spline,
+        TimeSignal,
+        WindowedPose,
+    )
 }
 """What a file may name; nothing else is ever made from it."""
 
