@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -32,8 +33,25 @@ class Seam:
     """...or both pieces are played on for half this length beyond the seam, and crossfaded."""
 
 
+class Motion(Protocol):
+    """An affine map of the points of a curve."""
+
+    def __call__(self, points: FloatArray, /) -> FloatArray:
+        """Map points (..., c)."""
+        ...
+
+    def back(self, changes: FloatArray, /) -> FloatArray:
+        """Map differences of mapped points (..., c) back."""
+        ...
+
+
 def splice_spline(
-    spline: Spline, pieces: Sequence[Piece], seams: Sequence[Seam], *, closed: bool = False
+    spline: Spline,
+    pieces: Sequence[Piece],
+    seams: Sequence[Seam],
+    *,
+    closed: bool = False,
+    motions: Sequence[Motion] | None = None,
 ) -> Spline:
     """Return pieces of a curve one after another, C2.
 
@@ -47,26 +65,33 @@ def splice_spline(
         One between any two pieces, and one more from the last to the first where closed.
     closed : bool, default False
         Whether the end shall meet the start, too.
+    motions : sequence of Motion, optional
+        Where each piece is moved, the first by nothing; where closed one more: what moves the first piece to
+        where the last one ends.
 
     Returns
     -------
     Spline
         From 0; the curve beyond the reach of the seams is the same to rounding.
     """
-    parts = [with_inner_knots(_piece(spline, piece), 3) for piece in pieces]
-    n = len(parts)
+    n = len(pieces)
+    whole = [spline] * (n + 1)
+    if motions is not None:
+        whole = [spline, *(spline.with_controls(motion(spline.controls)) for motion in motions[1:])]
+    parts = [with_inner_knots(_piece(curve, piece), 3) for curve, piece in zip(whole, pieces)]
     out = list(parts)
     bridges: dict[int, Spline] = {}
     for i in range(n if closed else n - 1):
         j, seam = (i + 1) % n, seams[i]
-        left, right = _end_state(parts[i], at_end=True), _end_state(parts[j], at_end=False)
+        following = parts[j] if motions is None or j > 0 else _piece(whole[n], pieces[0])
+        left, right = _end_state(parts[i], at_end=True), _end_state(following, at_end=False)
         if seam.gap > 0:
             bridges[i] = bridge(left, right, seam.gap)
             continue
-        towards = _offsets(spline, pieces[i], pieces[j], left, right, seam)
+        towards = _offsets((whole[i], pieces[i]), (whole[i + 1], pieces[j]), left, right, seam)
         if towards is not None:
             out[i] = carried(out[i], towards[0], at_end=True)
-            out[j] = carried(out[j], towards[1], at_end=False)
+            out[j] = carried(out[j], towards[1] if j else _moved_back(towards[1], motions), at_end=False)
     laid: list[Spline] = []
     for i, part in enumerate(out):
         laid.append(part)
@@ -85,9 +110,17 @@ def _end_state(part: Spline, *, at_end: bool) -> FloatArray:
     return np.stack([part(u, order) for order in range(3)])
 
 
+def _moved_back(offset: Offset, motions: Sequence[Motion] | None) -> Offset:
+    if motions is None:
+        return offset
+    last = motions[-1]
+    return lambda q: last.back(offset(q))
+
+
 def _offsets(
-    spline: Spline, before: Piece, after: Piece, left: FloatArray, right: FloatArray, seam: Seam
+    one: tuple[Spline, Piece], other: tuple[Spline, Piece], left: FloatArray, right: FloatArray, seam: Seam
 ) -> tuple[Offset, Offset] | None:
+    (spline, before), (spline_after, after) = one, other
     jump = right - left
     if not jump.any():
         return None
@@ -95,7 +128,7 @@ def _offsets(
     if seam.fade > 0:
         half = min(0.5 * seam.fade, *lengths, _beyond(spline, before[1], before), _ahead(spline, after))
         if half > 1e-3 * seam.fade:
-            return _crossfade(spline, before, after, half)
+            return _crossfade((spline, before), (spline_after, after), half)
     backwards = np.array([1.0, -1.0, 1.0])[:, None]
     reaches = [min(REACH * seam.half_life, length) for length in lengths]
     return (
@@ -114,7 +147,8 @@ def _ahead(spline: Spline, piece: Piece) -> float:
     return piece[0] - first if piece[1] > piece[0] else last - piece[0]
 
 
-def _crossfade(spline: Spline, before: Piece, after: Piece, half: float) -> tuple[Offset, Offset]:
+def _crossfade(one: tuple[Spline, Piece], other: tuple[Spline, Piece], half: float) -> tuple[Offset, Offset]:
+    (spline, before), (spline_after, after) = one, other
     ways = [1.0 if b > a else -1.0 for a, b in (before, after)]
 
     def difference(sign: float) -> Offset:
@@ -123,7 +157,7 @@ def _crossfade(spline: Spline, before: Piece, after: Piece, half: float) -> tupl
             rows: list[FloatArray] = []
             for order in range(4):
                 last = spline(before[1] + ways[0] * sign * q, order) * (ways[0] * sign) ** order
-                first = spline(after[0] + ways[1] * sign * q, order) * (ways[1] * sign) ** order
+                first = spline_after(after[0] + ways[1] * sign * q, order) * (ways[1] * sign) ** order
                 rows.append(-sign * (first - last))
             return np.stack(rows)
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tempose.curves import MonotoneMap, Seam, Spline, join_maps, splice_spline
+from tempose.curves import MonotoneMap, Seam, join_maps, splice_spline
+from tempose.signals.placement import splice_placement
 from tempose.signals.signals import Signals
 from tempose.signals.time.origin import splice_origin
 from tempose.signals.time.signal import TimeSignal
@@ -208,13 +209,9 @@ def _splice_ticks(signals: Signals, pieces: list[Piece], seams: list[Seam], clos
     path = None if signals.path is None else splice_spline(signals.path, pieces, seams, closed=closed)
     placement = None
     if signals.placement is not None:
-        placement = _splice_placement(signals.placement, pieces, seams, closed)
+        placement = splice_placement(signals.placement, pieces, seams, closed=closed)
     origin = splice_origin(signals.origin, pieces, [seam.gap for seam in seams])
     return replace(signals, time=time, path=path, placement=placement, origin=origin)
-
-
-def _splice_placement(placement: Spline, pieces: list[Piece], seams: list[Seam], closed: bool) -> Spline:
-    return splice_spline(placement, pieces, seams, closed=closed)
 
 
 def frames_as_pieces(signals: Signals, pieces: Sequence[tuple[float, float]]) -> list[Piece]:
