@@ -303,7 +303,8 @@ class SignalModel:
         Returns
         -------
         SignalModel
-            A new model; this one stays as it is.
+            A new model; this one stays as it is. ``report_["edit_notes"]`` holds what a person should know
+            of what was done.
 
         Raises
         ------
@@ -312,12 +313,39 @@ class SignalModel:
         """
         from tempose.signals.edits import apply_edits
 
-        signals = apply_edits(self._fitted(), operations, None if folder is None else Path(folder))
-        return self._with(signals, (*self.edits_, *(dict(o) for o in operations)))
+        notes: list[str] = []
+        place = None if folder is None else Path(folder)
+        signals = apply_edits(self._fitted(), operations, place, notes)
+        report = {**self.report_, "edit_notes": notes}
+        return self._with(signals, (*self.edits_, *(dict(o) for o in operations)), report)
 
-    def _with(self, signals: Signals, edits: tuple[dict[str, Any], ...]) -> SignalModel:
+    @classmethod
+    def from_signals(cls, signals: Signals) -> SignalModel:
+        """Make a model of signals that no clip was fitted for, such as a design.
+
+        Parameters
+        ----------
+        signals : Signals
+            What is played.
+
+        Returns
+        -------
+        SignalModel
+            Its report holds the numbers k, l, m and d only.
+        """
+        k, l, m = len(signals.time.curve.controls), len(signals.pose.sites), len(signals.shape.components)
+        space = signals.shape.space
+        model = cls(space.name)
+        model.signals_, model.edits_, model.source_ = signals, (), Source()
+        model.report_ = {"k": k, "l": l, "m": m, "dimension": space.dimension, "warnings": []}
+        model.positions_, model.site_frames_ = np.array(signals.pose.sites), np.zeros(0, np.int64)
+        return model
+
+    def _with(
+        self, signals: Signals, edits: tuple[dict[str, Any], ...], report: dict[str, Any]
+    ) -> SignalModel:
         model = SignalModel(**asdict(self.options))
-        model.signals_, model.report_, model.edits_ = signals, self.report_, edits
+        model.signals_, model.report_, model.edits_ = signals, report, edits
         model.positions_, model.site_frames_ = self.positions_, self.site_frames_
         model.source_ = self.source_
         return model
