@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from tempose.signals.shape.signal import ShapeSignal
 from tempose.signals.time.origin import Origin
 from tempose.signals.time.signal import TimeSignal
 from tempose.typing import FloatArray
+
+FADE = (1.0, 3.0)
+"""Steps of the pose plane: a curve moved further than the first begins to lose what the path knows beyond g,
+beyond the second it shows g alone. That rest belongs to the pose that was left, not to the one gone to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,11 +94,49 @@ class Signals:
         Returns
         -------
         (..., m) ndarray
-            ``x_c + g(f) - g(f_0)``; without a path, g(f).
+            ``g(f) + w (x_c - g(f_0))``; without a path, g(f). Where nobody moved the curve this is x_c,
+            bit for bit; w fades from 1 to 0 as the curve leaves its old place, see `FADE`.
         """
-        t = self.ticks(seconds)
-        captured = t if self.origin is None else self.origin(t)
-        x = self.pose(self.time(t), captured)
+        return self.coordinates_at(self.ticks(seconds))
+
+    def coordinates_at(self, ticks: FloatArray) -> FloatArray:
+        """Return the shape coordinates at ticks.
+
+        Parameters
+        ----------
+        ticks : (...) float
+            Where in the curve.
+
+        Returns
+        -------
+        (..., m) ndarray
+            As `coordinates` returns them.
+        """
+        t = np.asarray(ticks, dtype=np.float64)
+        captured = t if self.origin is None else np.asarray(self.origin(t))
         if self.path is None:
+            return self.pose(self.time(t), captured)
+        x = self.path(t)
+        if self.time.curve is self.time.unedited:
             return x
-        return self.path(t) + (x - self.pose(self.time.before_edits(t), captured))
+        f, before = self.time(t), self.time.before_edits(t)
+        moved = (f != before).any(axis=-1)
+        if not moved.any():
+            return x
+        f, before, captured = f[moved], before[moved], captured[moved]
+        w = self._share_of_path(np.linalg.norm(f - before, axis=-1))[:, None]
+        x[moved] = self.pose(f, captured) + w * (x[moved] - self.pose(before, captured))
+        return x
+
+    def _share_of_path(self, moved: FloatArray) -> FloatArray:
+        start, stop = FADE[0] * self.pose_step, FADE[1] * self.pose_step
+        s = np.clip((moved - start) / max(stop - start, np.finfo(float).tiny), 0.0, 1.0)
+        return 1.0 - s * s * (3.0 - 2.0 * s)
+
+    @cached_property
+    def pose_step(self) -> float:
+        """Median way of the unedited curve through the pose plane in a tick; places held do not count."""
+        first, last = self.time.pace.domain
+        places = self.time.before_edits(np.linspace(first, last, max(round(last - first), 1) + 1))
+        steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        return float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0

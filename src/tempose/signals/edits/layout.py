@@ -130,12 +130,8 @@ def _grid(signals: Signals) -> FloatArray:
 
 def _poses_at(signals: Signals, ticks: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return shape coordinates at ticks, edits included, and turned so that distances are those of shapes."""
-    X = _by_ticks(signals).coordinates(ticks)
+    X = signals.coordinates_at(ticks)
     return X, X @ orthonormal_basis(signals.shape)
-
-
-def _by_ticks(signals: Signals) -> Signals:
-    return replace(signals, retimings=(), rate=1.0)
 
 
 def _laid_out(
@@ -183,7 +179,7 @@ def _played_path(signals: Signals, ticks: FloatArray) -> Spline | None:
     shares = np.arange(1, FINER)[:, None] / FINER
     fine = insert_knots(path, np.ravel(knots[:-1] + shares * np.diff(knots)))
     u = np.unique(fine.knots)
-    played = _by_ticks(signals).coordinates(u)
+    played = signals.coordinates_at(u)
     if len(u) + 2 != len(fine.controls):
         return interpolating_spline(u, played)
     return Spline(fine.knots, fine.controls + interpolating_spline(u, played - path(u)).controls)
