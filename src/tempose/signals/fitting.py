@@ -164,7 +164,7 @@ def _note_stillness(shape: FittedShape, notes: Notes) -> None:
     left = float(shape.percent(shape.left_out.sum()))
     if left > 0:
         notes.warnings.append(
-            f"the motion is {left:.3g} % of the diagonal, within the tolerance: one pose for all frames"
+            f"m = 0: one pose stands for all frames, which move by {left:.3g} % of the diagonal about it"
         )
 
 

@@ -27,6 +27,9 @@ from tempose.typing import FloatArray, IntArray
 POOR_STRESS = 0.35
 """Stress above which distances in the plane say little about those between poses."""
 
+FAR = 1e4
+"""How many times as far apart as the poses pins may lie."""
+
 ASTRAY = 0.3
 """Part of the layout's radius by which a curve may miss the frames before a warning is due."""
 
@@ -100,7 +103,8 @@ def fit_plane(
 def _laid_out(
     X: FloatArray, options: FitOptions, pins: Mapping[int, FloatArray], notes: Notes
 ) -> tuple[FloatArray, FloatArray]:
-    """Places of the frames, and ticks between them that g needs samples at: only where l is free."""
+    """Return places of the frames, and ticks between them that g needs samples at: only where l is free."""
+    _check_reach(X, pins)
     if options.layout == "mds":
         result = PoseLayout(pose_distances(X)).solve(pins)
         _note_layout(notes, "mds", result.stress, result.warnings)
@@ -110,6 +114,18 @@ def _laid_out(
     _note_layout(notes, choice.name, choice.stress, tuple(strays))
     notes.facts["layout"] |= {"aspect": choice.aspect, "crossings": choice.crossings}
     return choice.positions, choice.middles if options.l is None else np.zeros(0)
+
+
+def _check_reach(X: FloatArray, pins: Mapping[int, FloatArray]) -> None:
+    if len(pins) < 2:
+        return
+    places = np.array(list(pins.values()))
+    wide, poses = float(np.ptp(places, axis=0).max()), float(np.ptp(X, axis=0).max())
+    if wide > FAR * poses:
+        raise ValueError(
+            f"pins lie {wide:.3g} apart, but the poses only {poses:.3g}: places are in units of the pose plane, "
+            "in which distances are those between poses"
+        )
 
 
 def _note_layout(notes: Notes, name: str, stress: float, warnings: tuple[str, ...]) -> None:

@@ -20,6 +20,9 @@ from tempose.signals.sampling import evaluate
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray, Progress, silent
 
+ROUNDING = 1e-9
+"""Percent of the diagonal below which an error is none."""
+
 
 def fit_report(
     clip: MeshClip, fitted: FittedClip, options: FitOptions, progress: Progress = silent
@@ -50,7 +53,7 @@ def fit_report(
     literal = replace(signals, path=None)
     paper = errors if signals.path is None else clip_errors(clip, literal, fitted.diagonal, progress)[0]
     facts = dict(notes.facts)
-    floor = facts.pop("floor", None)
+    floor = float(fitted.shape.percent(facts.pop("floor", 0.0)))
     report: dict[str, Any] = {
         "version": __version__,
         "options": asdict(options),
@@ -66,11 +69,10 @@ def fit_report(
         "paper": paper,
         "budget": error_budget(fitted),
         "frame_errors": frame_errors(fitted, played),
+        "floor_percent": floor,
         "scree": scree(fitted.shape),
-        "warnings": [*notes.warnings, *_result_warnings(fitted, floor, options, paper)],
+        "warnings": [*notes.warnings, *_result_warnings(floor, options, paper)],
     }
-    if floor is not None:
-        report["floor_percent"] = float(fitted.shape.percent(floor))
     seconds = {**notes.seconds, "check": time.perf_counter() - start}
     report["seconds"] = {**seconds, "total": sum(seconds.values())}
     return report
@@ -139,15 +141,12 @@ def error_budget(fitted: FittedClip) -> dict[str, float]:
     return {**percent, "f_signed": math.copysign(float(shape.percent(abs(rest))), rest)}
 
 
-def _result_warnings(
-    fitted: FittedClip, floor: float | None, options: FitOptions, paper: dict[str, float | None]
-) -> list[str]:
+def _result_warnings(floor: float, options: FitOptions, paper: dict[str, float | None]) -> list[str]:
     """Say what only the finished fit shows."""
     found: list[str] = []
-    if floor is not None:
-        least = float(fitted.shape.percent(floor))
+    if floor > ROUNDING:
         found.append(
-            f"frames that repeat lie at one place: g(f(t)) cannot be nearer to the clip than {least:.2g} % "
+            f"frames that repeat lie at one place: g(f(t)) cannot be nearer to the clip than {floor:.2g} % "
             "of the diagonal, whatever k, l and m"
         )
     reached = paper["rms_percent"]
