@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from tempose.shape_spaces.edge_dihedral import EdgeDihedralSpace
 from tempose.shape_spaces.gradient import GradientSpace
 from tempose.shape_spaces.patch import PatchSpace
+from tempose.shape_spaces.rotation_invariant import RotationInvariantSpace
 from tempose.shape_spaces.space import ShapeSpace
 from tempose.shape_spaces.vertex import VertexSpace
 from tempose.typing import FloatArray, IntArray
 
 SPACES: dict[str, type[ShapeSpace]] = {
-    space.name: space for space in (VertexSpace, GradientSpace, PatchSpace, EdgeDihedralSpace)
+    space.name: space
+    for space in (VertexSpace, GradientSpace, PatchSpace, EdgeDihedralSpace, RotationInvariantSpace)
 }
 """Class of each name, in the order in which a person would try them."""
 

@@ -65,7 +65,7 @@ def find_parts(V: FloatArray, F: IntArray, weights: FloatArray) -> list[Part]:
     return parts
 
 
-def steady_weights(V: FloatArray, F: IntArray, frames: FloatArray | None) -> FloatArray:
+def steady_weights(V: FloatArray, F: IntArray, frames: FloatArray) -> FloatArray:
     """Weigh the vertices for the frame of their part: area, and more where a clip moves them most rigidly.
 
     Parameters
@@ -74,8 +74,8 @@ def steady_weights(V: FloatArray, F: IntArray, frames: FloatArray | None) -> Flo
         Reference mesh.
     F : (m, 3) int
         Faces.
-    frames : (T, n, 3) float, optional
-        Frames of a clip.
+    frames : (T, n, 3) float
+        Frames of a clip; of a single one nothing is learned.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def steady_weights(V: FloatArray, F: IntArray, frames: FloatArray | None) -> Flo
     """
     area = vertex_areas(V, F)
     area = area / max(area.sum(), 1e-300)
-    if frames is None or len(frames) < 2:
+    if len(frames) < 2:
         return area
     weights = area
     _, labels = vertex_components(F, len(V))

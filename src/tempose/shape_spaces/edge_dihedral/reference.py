@@ -16,6 +16,7 @@ from tempose.shape_spaces.edge_dihedral.triangles import areas_from_lengths
 from tempose.typing import FloatArray, IntArray
 
 _SAMPLES = 48
+_DOUBT = 0.02
 _THINNEST = 0.05
 """Least area that counts for an edge, as a share of its length squared: slivers would outweigh all else."""
 
@@ -102,14 +103,13 @@ def make_reference(rest: FloatArray, faces: IntArray, frames: FloatArray | None)
     V = as_floats(rest, "rest", ("n", 3))
     F = check_faces(faces, len(V))
     hinges = find_hinges(F)
-    picked = _pick(frames, len(V))
-    poses = V[None] if picked is None else picked
+    poses = sample_poses(V, frames)
     lengths, sines, cosines = 0.0, 0.0, 0.0
     for X in poses:
         measured, angles = lengths_and_dihedrals(X, F, hinges)
         lengths = lengths + measured / len(poses)
         sines, cosines = sines + np.sin(angles), cosines + np.cos(angles)
-    weights = steady_weights(V, F, picked)
+    weights = steady_weights(V, F, poses)
     turned = _turned_to_mean(V, poses, weights)
     together = np.hypot(sines, cosines) / len(poses)
     spread = -2 * np.log(np.clip(together, 1e-6, 1.0))
@@ -149,9 +149,29 @@ def check_faces(faces: IntArray, n: int) -> IntArray:
     return F
 
 
-def _pick(frames: FloatArray | None, n: int) -> FloatArray | None:
+def sample_poses(rest: FloatArray, frames: FloatArray | None) -> FloatArray:
+    """Choose the meshes that a reference is measured on.
+
+    Parameters
+    ----------
+    rest : (n, 3) float
+        Rest vertices, metres.
+    frames : (T, n, 3) float, optional
+        Clip or poses.
+
+    Returns
+    -------
+    (k, n, 3) ndarray of float64
+        At most 48 of the frames, evenly spread; rest alone without frames.
+
+    Raises
+    ------
+    ValueError
+        If the frames have another shape or hold NaN.
+    """
+    n = len(rest)
     if frames is None:
-        return None
+        return np.asarray(rest, dtype=np.float64)[None]
     if np.ndim(frames) != 3 or np.shape(frames)[1:] != (n, 3) or len(frames) == 0:
         raise ValueError(f"frames must have shape (T, {n}, 3) with T > 0, got {np.shape(frames)}")
     at = np.unique(np.linspace(0, len(frames) - 1, min(_SAMPLES, len(frames))).round().astype(int))
@@ -183,3 +203,23 @@ def edge_areas(hinges: Hinges, lengths: FloatArray) -> FloatArray:
     areas = areas_from_lengths(lengths[hinges.face_edges])
     summed = np.bincount(hinges.face_edges.ravel(), np.repeat(areas / 3, 3), minlength=len(lengths))
     return np.maximum(summed, _THINNEST * lengths**2)
+
+
+def hinge_stiffness(hinges: Hinges, reference: Reference) -> FloatArray:
+    """How much the angle of each hinge counts when faces are turned.
+
+    Parameters
+    ----------
+    hinges : Hinges
+        Of the faces.
+    reference : Reference
+        With the spread of the angles over a clip.
+
+    Returns
+    -------
+    (H,) ndarray
+        Weights, positive: low for slivers, and where the angle swings to and fro over the clip, so that
+        its mean with another pose says little about where the faces shall turn.
+    """
+    area, length = edge_areas(hinges, reference.lengths)[hinges.edge], reference.lengths[hinges.edge]
+    return area / length**2 / (_DOUBT + reference.spread[hinges.slot])

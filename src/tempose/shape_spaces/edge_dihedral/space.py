@@ -12,11 +12,15 @@ from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_m
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
 from tempose.shape_spaces.edge_dihedral.placement import Placement
-from tempose.shape_spaces.edge_dihedral.reference import Reference, edge_areas, make_reference
+from tempose.shape_spaces.edge_dihedral.reference import (
+    Reference,
+    edge_areas,
+    hinge_stiffness,
+    make_reference,
+)
 from tempose.typing import FloatArray, IntArray
 
 _BEND = 0.3
-_DOUBT = 0.02
 _SHORTEST = 1e-3
 _TURN = 2 * np.pi
 
@@ -41,8 +45,7 @@ class EdgeDihedralSpace:
         edge_of_slot = np.arange(hinges.n_slots)
         edge_of_slot[hinges.slot] = hinges.edge
         self.angle_weights = _BEND * np.sqrt(areas / areas.sum())[edge_of_slot]
-        # a hinge that swings to and fro over the clip says little about where its faces shall turn
-        stiffness = np.sqrt(areas)[hinges.edge] / l0[hinges.edge] / (_DOUBT + reference.spread[hinges.slot])
+        stiffness = hinge_stiffness(hinges, reference)
         self.placement = Placement(reference.vertices, reference.faces, reference.steadiness)
         self.assembly = Assembly(reference.faces, hinges, self.n_vertices, l0, stiffness)
         self.n_edges, self.n_shape = len(l0), len(l0) + hinges.n_slots
