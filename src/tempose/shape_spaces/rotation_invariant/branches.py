@@ -77,7 +77,7 @@ def _order(members: Any, matters: Any, order: Any, closing: Any) -> int:
 
 
 @numba.njit(cache=True, nogil=True)
-def search(views: Any, corners: Any, signs: Any, own: Any, around: Any, nodes: int = 20_000) -> float:
+def search(views: Any, corners: Any, signs: Any, own: Any, around: Any, bound: float, nodes: int) -> bool:
     """Find the best signs of some corners, all others held; changes them in place.
 
     Parameters
@@ -90,13 +90,15 @@ def search(views: Any, corners: Any, signs: Any, own: Any, around: Any, nodes: i
         Corners that may change, ascending.
     around : (r,) ndarray of int
         Hinges that see them.
-    nodes : int, default 20000
+    bound : float
+        Only patterns of less disagreement than this, and than that of the start, are looked for.
+    nodes : int
         Signs tried at most; the best found by then is taken.
 
     Returns
     -------
-    float
-        Disagreement that is left over these hinges.
+    bool
+        Whether a better pattern was found.
     """
     members = np.full((len(around), 4), -1)
     matters = _open_signs(views, corners, own, around, members)
@@ -108,6 +110,7 @@ def search(views: Any, corners: Any, signs: Any, own: Any, around: Any, nodes: i
     least = 0.0
     for h in around:
         least += _doubt(views, corners, signs, h)
+    least, found = min(least, bound), False
     base = 0.0
     for r in by_depth[: first[0]]:
         base += _doubt(views, corners, signs, around[r])
@@ -118,7 +121,7 @@ def search(views: Any, corners: Any, signs: Any, own: Any, around: Any, nodes: i
     while depth >= 0 and nodes > 0:
         if depth == count:
             if spent[depth] < least:
-                least = spent[depth]
+                least, found = spent[depth], True
                 for p in range(count):
                     best[order[p]] = signs[own[order[p]]]
             depth -= 1
@@ -138,4 +141,4 @@ def search(views: Any, corners: Any, signs: Any, own: Any, around: Any, nodes: i
             spent[depth + 1] = cost
             depth += 1
     signs[own] = best
-    return least
+    return found

@@ -17,6 +17,8 @@ from tempose.typing import FloatArray, IntArray
 _ROUNDS = 6
 _AGREED = 1e-11
 _ABOVE_NOISE = 1e3
+_EXACT = 1e-9
+_MANY, _FEW = 1_000_000, 3000
 
 
 @numba.njit(cache=True, nogil=True)
@@ -57,8 +59,8 @@ class SignSearch:
     Notes
     -----
     Signs start as in the reference. Vertices beside an edge whose ends disagree fall into clusters; in each
-    the pattern of signs with the least disagreement is searched for by branch and bound. With the numbers
-    of a mesh a wrong branch disagrees after few signs, so that the search is short.
+    the pattern of signs with the least disagreement is searched for by branch and bound: first a pattern
+    with none, as the numbers of a mesh have it, where a wrong branch is cut after few signs.
     """
 
     def __init__(self, F: IntArray, n: int, ends: IntArray) -> None:
@@ -92,7 +94,8 @@ class SignSearch:
             limit = max(_AGREED, _ABOVE_NOISE * float(np.median(doubt))) if len(doubt) else 0.0
             before = doubt.sum()
             for own, around in self._clusters(np.flatnonzero(doubt > limit)):
-                search(views, corners, signs, own, around)
+                if not search(views, corners, signs, own, around, _EXACT, _MANY):
+                    search(views, corners, signs, own, around, np.inf, _FEW)
             doubts(views, corners, signs, doubt)
             if not doubt.sum() < 0.999 * before:
                 break
