@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from tempose.cli.signals_design import design
 from tempose.cli.signals_edit import edit
 from tempose.cli.signals_fit import fit
 from tempose.cli.signals_pictures import grid, plot
@@ -27,3 +28,4 @@ signals.command()(sample)
 signals.command()(edit)
 signals.command()(plot)
 signals.command()(grid)
+signals.command()(design)

@@ -22,7 +22,7 @@ from tempose.signals.pose.transitions import find_bad_transitions
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray, Progress, silent
 
-NAMES = {"h": "shape", "hg": "+ pose", "hgf": "+ time", "played": "played"}
+NAMES = {"h": "shape", "hg": "shape + pose", "hgf": "shape + pose + time", "played": "played"}
 """What the rows of ``frame_errors`` are called in pictures."""
 
 
@@ -91,14 +91,22 @@ def _drawers(
     if grid:
         found["pose-grid"] = lambda: draw_pose_grid(signals, theme=theme, progress=progress)
     tolerance: Any = report.get("options", {}).get("tolerance")
-    if report.get("frame_errors"):
-        errors = {NAMES[name]: np.asarray(row) for name, row in report["frame_errors"].items()}
+    if report.get("frame_errors") and not model.edits_:
+        errors = _named_errors(report["frame_errors"])
         found["frame-errors"] = lambda: draw_errors(errors, tolerance, theme)
     if report.get("scree"):
         found["scree"] = lambda: draw_scree(np.asarray(report["scree"]), report["m"], tolerance, theme)
     if signals.retimings:
         found["retiming"] = lambda: draw_retiming(signals, theme)
     return found
+
+
+def _named_errors(rows: dict[str, list[float]]) -> dict[str, FloatArray]:
+    errors = {name: np.asarray(row, dtype=np.float64) for name, row in rows.items()}
+    if np.allclose(errors.get("h", 0.0), errors["played"], rtol=1e-3, atol=1e-9):
+        del errors["h"]  # one line would hide the other
+        return {NAMES[name]: errors[name] for name in ("hg", "hgf")} | {"played = shape": errors["played"]}
+    return {NAMES[name]: row for name, row in errors.items()}
 
 
 def bad_transitions(signals: Signals) -> list[int]:
