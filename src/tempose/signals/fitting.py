@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,15 +17,18 @@ from tempose.signals.options import FitOptions, check_pins
 from tempose.signals.placement import placement_spline
 from tempose.signals.plane import Goal, Plane, fit_plane, fit_time, turned
 from tempose.signals.pose.transitions import find_bad_transitions
-from tempose.signals.shape.fit import FittedShape, Percent, fit_examples, fit_shape, rescaled
+from tempose.signals.shape.fit import FittedShape, Percent, checked_frames, fit_examples, fit_shape, rescaled
 from tempose.signals.shape.streamed import fit_streamed_shape
 from tempose.signals.signals import Signals
 from tempose.signals.still import still_signals
 from tempose.signals.time.path import time_path
+from tempose.signals.time.signal import TimeSignal
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 LEAST_SHARE = 0.05
 """Without a tolerance given, at most so much of a clip's own motion is left out."""
+
+_SAFETY = 1.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +106,7 @@ def fit_clip(
         signals = still_signals(shape.shape, clip, placement)
         _note_stillness(shape, notes)
         return FittedClip(signals, shape, None, frames.diagonal, notes)
-    goal = _goal(shape, limit)
-    plane = fit_plane(shape.straight, options, pins, goal, notes)
-    f, pose = fit_time(plane, shape.straight, options, goal, notes)
+    shape, plane, f, pose = _fit_rest(frames, shape, options, pins, limit, notes)
     path = time_path(shape.X, _period(options)) if options.between == "path" else None
     g: Any = turned(pose, shape.turn)
     signals = Signals(shape.shape, g, f, path, placement, (), clip.fps, clip.fps, clip.mesh)
@@ -118,7 +119,7 @@ def _fit_shape(
 ) -> tuple[FittedShape, float]:
     """Fit the shape signal; also return the tolerance it was held to."""
     clip, limit = frames.clip, options.percent
-    if frames.long and options.space == "vertex" and Q is None:
+    if frames.streamed(options.m) and options.space == "vertex" and Q is None:
         with notes.stage("shape"):
             space = VertexSpace(len(clip.rest))
             return fit_streamed_shape(space, frames, options.m, SHAPE_SHARE * limit, notes.progress), limit
@@ -140,6 +141,41 @@ def _fit_shape(
     if options.m is not None and shape.X.shape[1] < options.m:
         notes.warnings.append(f"m {options.m} was asked for; the frames span {shape.X.shape[1]} dimensions")
     return shape, limit
+
+
+def _fit_rest(
+    frames: ClipFrames,
+    shape: FittedShape,
+    options: FitOptions,
+    pins: Mapping[int, FloatArray],
+    limit: float,
+    notes: Notes,
+) -> tuple[FittedShape, Plane, TimeSignal, Any]:
+    """Fit g and f; where coordinates are no vertices, anew until decoded frames meet the tolerance too."""
+    X, mark = shape.straight, len(notes.warnings)
+    for last in (False, False, True):
+        del notes.warnings[mark:]
+        goal = _goal(shape, limit)
+        plane = fit_plane(X, options, pins, goal, notes)
+        f, pose = fit_time(plane, X, options, goal, notes)
+        ratio = 0.0 if last or options.complete else _measured(frames, shape, f, pose) / limit
+        if ratio <= 1:
+            break
+        shape = replace(shape, scale=shape.scale * ratio * _SAFETY)
+    return shape, plane, f, pose
+
+
+def _measured(frames: ClipFrames, shape: FittedShape, f: TimeSignal, pose: Any) -> float:
+    """Rms percent of decoded frames of the literal psi; 0 where coordinates are vertices and it is known."""
+    space = shape.shape.space
+    if isinstance(space, VertexSpace) or shape.turn is not None:
+        return 0.0
+    which = checked_frames(len(shape.X))
+    ticks = which.astype(np.float64)
+    V = frames.block(which)
+    measure = _decoded_percent(space, V, frames.diagonal)
+    Z = shape.shape.mean + pose(f(ticks), ticks) @ shape.shape.components
+    return measure(Z, np.arange(len(which)))
 
 
 def _decoded_percent(space: ShapeSpace, V: FloatArray, diagonal: float) -> Percent:

@@ -43,4 +43,4 @@ class Notes:
         self.progress(len(self.seconds), STAGES, name)
         start = time.perf_counter()
         yield
-        self.seconds[name] = time.perf_counter() - start
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start

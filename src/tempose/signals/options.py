@@ -64,6 +64,11 @@ class FitOptions:
         """The tolerance, rms percent of the diagonal."""
         return TOLERANCE if self.tolerance is None else float(self.tolerance)
 
+    @property
+    def complete(self) -> bool:
+        """Whether k and l are given, so that nothing about the pose plane is left to choose."""
+        return self.k is not None and self.l is not None
+
     def check_frames(self, T: int, largest_m: int | None = None) -> None:
         """Check the numbers against a clip.
 

@@ -123,8 +123,8 @@ def _check_reach(X: FloatArray, pins: Mapping[int, FloatArray]) -> None:
     wide, poses = float(np.ptp(places, axis=0).max()), float(np.ptp(X, axis=0).max())
     if wide > FAR * poses:
         raise ValueError(
-            f"pins lie {wide:.3g} apart, but the poses only {poses:.3g}: places are in units of the pose plane, "
-            "in which distances are those between poses"
+            f"pins lie {wide:.3g} apart, but the poses only {poses:.3g}: places are in units of the pose "
+            "plane, in which distances are those between poses"
         )
 
 

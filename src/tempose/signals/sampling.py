@@ -112,9 +112,10 @@ def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np
     """
     times = np.asarray(times, dtype=np.float64)
     shape = (*times.shape, signals.shape.space.n_vertices, 3)
-    flat = as_floats(times.reshape(-1), "times", ("K",))
     if out is None:
         _check_room(shape, dtype)
+    flat = as_floats(times.reshape(-1), "times", ("K",))
+    if out is None:
         rows = np.zeros((len(flat), *shape[-2:]), dtype)
     elif out.shape != shape or len(shape) != 3:
         raise ValueError(f"out must have shape (K, {shape[-2]}, 3) for K times, got {out.shape}")

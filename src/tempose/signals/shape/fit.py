@@ -13,7 +13,7 @@ from tempose.signals.shape.examples import orthonormal_basis, shape_coordinates,
 from tempose.signals.shape.signal import ShapeSignal
 from tempose.typing import FloatArray, IntArray
 
-CHECKED = 12
+CHECKED = 24
 """Frames decoded to see what a distance of the shape space means in vertices."""
 
 Percent = Callable[[FloatArray, IntArray], float]

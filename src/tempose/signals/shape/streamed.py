@@ -33,7 +33,7 @@ def fit_streamed_shape(
     Returns
     -------
     FittedShape
-        h and the coordinates; the spectrum ends with the components kept.
+        h and the coordinates; the spectrum ends with the directions looked at.
     """
     unit, T = frames.percent, frames.clip.n_frames
     tolerance = limit / (unit * np.sqrt(T))
@@ -41,6 +41,4 @@ def fit_streamed_shape(
         frames.blocks, space.dimension, m or None, tolerance=None if m else tolerance, progress=progress
     )
     shape = ShapeSignal(space, found.mean, found.components)
-    squares = np.concatenate([np.square(block - found.mean).sum(axis=1) for block in frames.blocks()])
-    left_out = np.maximum(squares - np.square(found.coordinates).sum(axis=1), 0.0)
-    return FittedShape(shape, found.coordinates, None, left_out, found.singular_values, unit)
+    return FittedShape(shape, found.coordinates, None, found.left_out, found.spectrum, unit)
