@@ -61,6 +61,9 @@ def test_residual_told_is_the_residual_made_and_nearly_the_best(m: int, decay: f
     assert_allclose(found.total, np.vdot(Y, Y), rtol=1e-12)
     assert_allclose(found.residual, np.square(Z - reconstruction(found)).sum(), rtol=1e-9)
     assert_allclose(found.rms, np.sqrt(found.residual / 80), rtol=1e-14)
+    assert_allclose(found.left_out, np.square(Z - reconstruction(found)).sum(axis=1), rtol=1e-8, atol=1e-12)
+    assert_allclose(found.spectrum[:m], found.singular_values)
+    assert (found.spectrum <= s[: len(found.spectrum)] * (1 + 1e-12)).all()
     best = float(np.square(s[m:]).sum())
     assert best * (1 - 1e-12) <= found.residual <= 1.15 * best
 

@@ -17,7 +17,7 @@ Blocks = Callable[[], Iterable[FloatArray]]
 OVERSAMPLING = 10
 """Directions looked at beyond those that are kept: the last few of a sketch are not yet principal."""
 
-FIRST_SKETCH = 32
+FIRST_SKETCH = 48
 """Directions of the first sketch when a tolerance, not a number of components, is asked for."""
 
 
@@ -33,6 +33,10 @@ class StreamedPca:
     """(T, m) of the rows in the components."""
     singular_values: FloatArray
     """(m,) falling: the square root of the energy of each component."""
+    spectrum: FloatArray
+    """(s,) the same of all directions of the sketch, s >= m; the last few are too small."""
+    left_out: FloatArray
+    """(T,) squared length of each row outside the components."""
     total: float
     """Sum of the squares of all centred rows."""
     residual: float
@@ -111,14 +115,15 @@ def streamed_pca(
             fresh = stream.sketch(fresh, V)
         fresh = fresh[:, : max(stream.n_rows - 1 - V.shape[1], 1)]
         V, X = np.hstack([V, fresh]), np.hstack([X.reshape(stream.n_rows, -1), stream.project(fresh)])
-        found = _principal(stream, V, X)
-        if m is not None:
-            return _keep(found, m)
-        left = found.total - np.cumsum(found.singular_values**2)
-        enough = int(np.count_nonzero(left > stream.n_rows * (tolerance or 0.0) ** 2)) + 1
-        complete = V.shape[1] >= min(d, stream.n_rows - 1) or len(found.singular_values) < V.shape[1]
-        if complete or enough + OVERSAMPLING <= V.shape[1]:
-            return _keep(found, enough)
+        s, turn = _principal(X)
+        if m is None:
+            left = stream.total - np.cumsum(s**2)
+            enough = int(np.count_nonzero(left > stream.n_rows * (tolerance or 0.0) ** 2)) + 1
+        else:
+            enough = m
+        complete = V.shape[1] >= min(d, stream.n_rows - 1) or len(s) < V.shape[1]
+        if m is not None or complete or enough + OVERSAMPLING <= V.shape[1]:
+            return _result(stream, V, X, s, turn[:, :enough])
         width = V.shape[1]
 
 
@@ -129,6 +134,7 @@ class _Stream:
         self.blocks, self.d, self.progress = blocks, d, progress
         self.n_rows, self.n_passes, self.total = 0, 0, 0.0
         self.mean: FloatArray = np.zeros(d)
+        self.squares: FloatArray = np.zeros(0)
 
     def sketch(self, directions: FloatArray, known: FloatArray) -> FloatArray:
         """Return an orthonormal basis of ``Z^T Z directions``, orthogonal to what is known."""
@@ -154,7 +160,14 @@ class _Stream:
 
     def project(self, V: FloatArray) -> FloatArray:
         """Return the coordinates (T, s) of the rows in orthonormal columns."""
-        return np.concatenate([(block - self.mean) @ V for block in self._rows()])
+        coordinates: list[FloatArray] = []
+        squares: list[FloatArray] = []
+        for block in self._rows():
+            Z = block - self.mean
+            coordinates.append(Z @ V)
+            squares.append(np.einsum("td,td->t", Z, Z))
+        self.squares = np.concatenate(squares)
+        return np.concatenate(coordinates)
 
     def _rows(self) -> Iterator[FloatArray]:
         done, stage = 0, f"principal components, pass {self.n_passes + 1}"
@@ -179,24 +192,28 @@ def _orthonormal(W: FloatArray, known: FloatArray) -> FloatArray:
     return np.linalg.qr(Q - known @ (known.T @ Q))[0] if known.shape[1] else Q
 
 
-def _principal(stream: _Stream, V: FloatArray, X: FloatArray) -> StreamedPca:
+def _principal(X: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the singular values of coordinates (T, s), falling, and the turn (s, r) to their own axes."""
     w, U = np.linalg.eigh(X.T @ X)
     w, U = w[::-1], U[:, ::-1]
     n_kept = max(int(np.count_nonzero(w > 1e-13 * max(w[0], 0.0))), 1)
-    w, U = np.maximum(w[:n_kept], 0.0), U[:, :n_kept]
-    residual = max(stream.total - float(w.sum()), 0.0)
-    coordinates, components = X @ U, (V @ U).T
+    return np.sqrt(np.maximum(w[:n_kept], 0.0)), U[:, :n_kept]
+
+
+def _result(stream: _Stream, V: FloatArray, X: FloatArray, s: FloatArray, turn: FloatArray) -> StreamedPca:
+    m = turn.shape[1]
+    coordinates = X @ turn
     return StreamedPca(
-        stream.mean, components, coordinates, np.sqrt(w), stream.total, residual, stream.n_passes
+        mean=stream.mean,
+        components=np.ascontiguousarray((V @ turn).T),
+        coordinates=coordinates,
+        singular_values=s[:m],
+        spectrum=s,
+        left_out=np.maximum(stream.squares - np.square(coordinates).sum(axis=1), 0.0),
+        total=stream.total,
+        residual=max(stream.total - float(s[:m] @ s[:m]), 0.0),
+        n_passes=stream.n_passes,
     )
-
-
-def _keep(found: StreamedPca, m: int) -> StreamedPca:
-    s = found.singular_values[:m]
-    residual = max(found.total - float(s @ s), 0.0)
-    components = np.ascontiguousarray(found.components[:m])
-    coordinates = np.ascontiguousarray(found.coordinates[:, :m])
-    return StreamedPca(found.mean, components, coordinates, s, found.total, residual, found.n_passes)
 
 
 def _check(d: int, m: int | None, tolerance: float | None, power_passes: int) -> None:

@@ -17,6 +17,9 @@ from tempose.typing import FloatArray, IntArray, Progress, silent
 IN_MEMORY = 40_000_000
 """Numbers of a clip, 320 MB as float64, from which on it is read in passes."""
 
+MANY_FRAMES = 600
+"""Frames from which on few components are found by a random sketch, not by the pairs of all frames."""
+
 
 @dataclass(frozen=True, eq=False)
 class ClipFrames:
@@ -60,6 +63,23 @@ class ClipFrames:
     def long(self) -> bool:
         """Whether the clip is too large to be held as numbers of double precision."""
         return self.clip.vertices.size > IN_MEMORY
+
+    def streamed(self, m: int | None) -> bool:
+        """Whether principal components are to be found in passes over the clip.
+
+        Parameters
+        ----------
+        m : int or None
+            Number asked for; None where a tolerance decides.
+
+        Returns
+        -------
+        bool
+            True for a long clip, and for one of many frames unless nearly all components are wanted: one
+            matrix of all pairs of frames costs the cube of their number.
+        """
+        many = self.clip.n_frames > MANY_FRAMES and (m is None or m < self.clip.n_frames // 2)
+        return self.long or many
 
     def block(self, frames: slice | IntArray) -> FloatArray:
         """Return some frames.
