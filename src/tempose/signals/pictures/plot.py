@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -101,7 +101,7 @@ def _drawers(
     return found
 
 
-def _named_errors(rows: dict[str, list[float]]) -> dict[str, FloatArray]:
+def _named_errors(rows: dict[str, list[float]]) -> Mapping[str, FloatArray]:
     errors = {name: np.asarray(row, dtype=np.float64) for name, row in rows.items()}
     if np.allclose(errors.get("h", 0.0), errors["played"], rtol=1e-3, atol=1e-9):
         del errors["h"]  # one line would hide the other
