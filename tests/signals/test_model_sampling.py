@@ -107,9 +107,9 @@ def test_poses_of_the_plane_are_h_of_g(model: SignalModel) -> None:
 
 def test_a_long_clip_is_fitted_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:
     clip = swinging()
-    whole = SignalModel(k=30, l=9, m=5).fit(clip)
+    whole = SignalModel(k=30, l=9, m=3).fit(clip)
     monkeypatch.setattr("tempose.signals.frames.IN_MEMORY", 100)
-    blocks = SignalModel(k=30, l=9, m=5).fit(clip)
+    blocks = SignalModel(k=30, l=9, m=3).fit(clip)
     assert_allclose(blocks.sample(dtype=np.float64), whole.sample(dtype=np.float64), atol=1e-6)
     for name in ("h", "g", "whole"):
         assert_allclose(blocks.report_["budget"][name], whole.report_["budget"][name], rtol=1e-3)
