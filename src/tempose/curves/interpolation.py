@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
@@ -10,7 +12,7 @@ from tempose.curves.spline import Spline
 from tempose.typing import FloatArray
 
 
-def interpolating_spline(u: FloatArray, points: FloatArray) -> Spline:
+def interpolating_spline(u: FloatArray, points: FloatArray, *, natural_start: bool = True) -> Spline:
     """Return the natural cubic spline through points.
 
     Parameters
@@ -19,11 +21,13 @@ def interpolating_spline(u: FloatArray, points: FloatArray) -> Spline:
         Ascending parameters, n >= 2.
     points : (n, c) float
         Where the curve is at those parameters.
+    natural_start : bool, default True
+        Whether the curve is straight at its start; else its second parameter is no knot, which needs n >= 3.
 
     Returns
     -------
     Spline
-        With n + 2 controls.
+        With n + 2 controls, or n + 1.
 
     Raises
     ------
@@ -32,10 +36,13 @@ def interpolating_spline(u: FloatArray, points: FloatArray) -> Spline:
     """
     u = as_floats(u, "u", ("n",))
     points = as_floats(points, "points", (len(u), "c"))
-    if len(u) < 2 or (np.diff(u) <= 0).any():
-        raise ValueError(f"u must hold 2 or more ascending parameters, got {len(u)}")
-    pieces = CubicSpline(u, points, bc_type="natural")
-    knots = np.concatenate([[u[0]] * 3, u, [u[-1]] * 3])
+    least = 2 if natural_start else 3
+    if len(u) < least or (np.diff(u) <= 0).any():
+        raise ValueError(f"u must hold {least} or more ascending parameters, got {len(u)}")
+    ends: Any = "natural" if natural_start else ("not-a-knot", "natural")
+    pieces = CubicSpline(u, points, bc_type=ends)
+    breaks = u if natural_start else np.delete(u, 1)
+    knots = np.concatenate([[u[0]] * 3, breaks, [u[-1]] * 3])
     return Spline(knots, controls_of(pieces, knots))
 
 

@@ -29,25 +29,27 @@ def centripetal_parameters(P: FloatArray) -> FloatArray:
 
 
 def averaged_knots(t: FloatArray, k: int) -> FloatArray:
-    """Return knots with about as many parameters between any two (Piegl and Tiller, section 9.4.1).
+    """Return knots with about as many parameters between any two, so that a fit is well determined.
 
     Parameters
     ----------
     t : (n,) float
         Ascending parameters.
     k : int
-        Controls, 4 to n + 2.
+        Controls, 4 to n.
 
     Returns
     -------
     (k + 4,) ndarray
-        Knots, the ends fourfold; the inner knot j is t at index j d, linearly between two.
+        Knots, the ends fourfold; the inner knot j = 1 .. k - 4 is t at index ``(j + 1) (n - 1) / (k - 1)``,
+        linearly between two.
 
     Notes
     -----
-    ``d = (n - 1) / (k - 3)``. The d of equations 9.68 and 9.69 makes some fits singular for k near n and does
-    not give the parameters themselves at k = n + 2, which section 3.2.3 of Cashman and Hormann needs.
+    In the spirit of Piegl and Tiller, section 9.4.1, but neither with their d (some fits are singular for k
+    near n) nor at ``j (n - 1) / (k - 3)``, which is never singular but as ill-conditioned as 1e15 at
+    n = k = 204: the controls drift by one frame against the frames. Here controls lie evenly among the
+    frames, as in a spline without knots next to the ends, and the condition stays below a hundred.
     """
-    d = (len(t) - 1) / (k - 3)
-    inner = np.interp(np.arange(1, k - 3) * d, np.arange(len(t)), t)
+    inner = np.interp(np.arange(2, k - 2) * ((len(t) - 1) / (k - 1)), np.arange(len(t)), t)
     return np.concatenate([[t[0]] * 4, inner, [t[-1]] * 4])
