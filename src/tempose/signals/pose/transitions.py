@@ -53,8 +53,8 @@ class Transitions:
     """How far the pose signal strays between frames."""
 
     deviation: FloatArray
-    """(n - 1,) distance of ``g(f)`` from the time spline half way between frames i and i + 1, in steps
-    ``|x_{i+1} - x_i|``."""
+    """(n - 1,) distance of ``g(f)`` from the time spline half way between frames i and i + 1, beyond that at
+    the frames themselves, in steps ``|x_{i+1} - x_i|``."""
     limit: float
     """Deviation above which a transition is bad."""
 
@@ -108,7 +108,11 @@ def find_bad_transitions(
         return Transitions(np.zeros(0), limit)
     path = interpolating_spline(np.arange(len(X), dtype=np.float64), X) if path is None else path
     middles = np.arange(len(X) - 1) + 0.5
+    frames = np.arange(len(X), dtype=np.float64)
     stray = np.linalg.norm(pose(time(middles), middles) - path(middles), axis=1)
+    # a coarse fit is off at the frames too: that is its error, not what happens between them
+    off = np.linalg.norm(pose(time(frames), frames) - path(frames), axis=1)
+    stray = np.maximum(stray - np.maximum(off[1:], off[:-1]), 0.0)
     return Transitions(read_only(stray / step_sizes(X)), limit)
 
 
