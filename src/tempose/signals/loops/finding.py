@@ -1,0 +1,146 @@
+"""Pairs of frames between which a clip can be played again and again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose._validate import as_floats
+from tempose.typing import FloatArray, IntArray
+
+EXACT, GOOD, GOOD_VELOCITY = 0.01, 0.7, 0.5
+_SIDE = 2  # frames on either side that are compared, too
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Frame `stop` looks like frame `start` and moves like it: after frame `stop - 1` comes `start` again."""
+
+    start: int
+    """First frame."""
+    stop: int
+    """The frame that the first one stands for."""
+    distance: float
+    """How far the two are apart, with the frames beside them, in mean steps from frame to frame."""
+    velocity: float
+    """How far their velocities are apart, in mean speeds."""
+
+    @property
+    def period(self) -> int:
+        """Frames after which the loop begins anew."""
+        return self.stop - self.start
+
+    @property
+    def cost(self) -> float:
+        """What the loops are sorted by."""
+        return self.distance + self.velocity
+
+    @property
+    def grade(self) -> str:
+        """Exact, good, or needs a transition."""
+        if self.distance < EXACT and self.velocity < EXACT:
+            return "exact"
+        good = self.distance < GOOD and self.velocity < GOOD_VELOCITY
+        return "good" if good else "needs a transition"
+
+
+def find_loops(X: FloatArray, shortest: int = 6, most: int = 8) -> list[Loop]:
+    """Find loops in a clip.
+
+    Parameters
+    ----------
+    X : (n, m) float
+        Shape coordinates of the frames, without where the body is if it travels.
+    shortest : int, default 6
+        Least number of frames in a loop.
+    most : int, default 8
+        How many to return.
+
+    Returns
+    -------
+    list of Loop
+        The best first; of loops that begin and end within two frames of each other only the best. A part of
+        the clip in which hardly anything moves is none.
+
+    Raises
+    ------
+    ValueError
+        If `shortest` or `most` is less than 1.
+    """
+    X = as_floats(X, "X", ("n", "m"))
+    if shortest < 1 or most < 1:
+        raise ValueError(f"shortest and most must be 1 or more, got {shortest} and {most}")
+    n = len(X)
+    if n <= shortest:
+        return []
+    X = _reduced(X)
+    velocity = np.gradient(X, axis=0)
+    step = float(np.linalg.norm(np.diff(X, axis=0), axis=1).mean())
+    speed = float(np.linalg.norm(velocity, axis=1).mean())
+    if step == 0 or speed == 0:
+        return []
+    apart = np.sqrt(_windowed(_squared(X))) / step
+    turned = np.sqrt(_squared(velocity)) / speed
+    start, stop = np.triu_indices(n, shortest)
+    travels = _spread(X, start, stop) > step
+    # of equally good loops the one whose seam lies where least moves
+    quiet = 1e-3 * np.linalg.norm(velocity, axis=1) / speed
+    cost = (apart + turned)[start, stop] + quiet[start]
+    order = np.argsort(cost, kind="stable")
+    return _distinct(
+        [
+            Loop(
+                int(start[i]), int(stop[i]), float(apart[start[i], stop[i]]), float(turned[start[i], stop[i]])
+            )
+            for i in order[travels[order]][: 400 * most]
+        ],
+        most,
+    )
+
+
+def _reduced(X: FloatArray) -> FloatArray:
+    # distances are all that counts: as many columns as frames tell them
+    X = X - X.mean(0)
+    if X.shape[1] <= len(X):
+        return X
+    w, U = np.linalg.eigh(X @ X.T)
+    return U * np.sqrt(np.maximum(w, 0.0))
+
+
+def _squared(X: FloatArray) -> FloatArray:
+    # differences, not the Gram matrix: twins shall be exactly 0 apart
+    out = np.zeros((len(X), len(X)))
+    for i in range(len(X)):
+        out[i] = np.square(X - X[i]).sum(1)
+    return out
+
+
+def _windowed(squared: FloatArray) -> FloatArray:
+    # mean over the frames beside both, as far as the clip has them
+    n = len(squared)
+    total, count = np.zeros((n, n)), np.zeros((n, n))
+    for k in range(-_SIDE, _SIDE + 1):
+        low, high = max(0, -k), n - max(0, k)
+        total[low:high, low:high] += squared[low + k : high + k, low + k : high + k]
+        count[low:high, low:high] += 1
+    return total / count
+
+
+def _spread(X: FloatArray, start: IntArray, stop: IntArray) -> FloatArray:
+    # rms distance of the frames of a loop to their mean, by running sums
+    sums = np.concatenate([np.zeros((1, X.shape[1])), np.cumsum(X, axis=0)])
+    squares = np.concatenate([[0.0], np.cumsum(np.square(X).sum(1))])
+    count = stop - start
+    mean = (sums[stop] - sums[start]) / count[:, None]
+    return np.sqrt(np.maximum((squares[stop] - squares[start]) / count - np.square(mean).sum(1), 0.0))
+
+
+def _distinct(loops: list[Loop], most: int) -> list[Loop]:
+    kept: list[Loop] = []
+    for loop in loops:
+        if all(max(abs(loop.start - k.start), abs(loop.stop - k.stop)) > 2 for k in kept):
+            kept.append(loop)
+        if len(kept) == most:
+            break
+    return kept
