@@ -92,6 +92,15 @@ def test_tolerance_is_met_with_hardly_more_components_than_needed(tolerance: flo
     assert_allclose(found.components @ found.components.T, np.eye(len(found.components)), atol=1e-12)
 
 
+def test_no_component_where_none_is_wanted_or_needed() -> None:
+    Z = falling(60, 40, 0.7)
+    motion = float(np.linalg.norm(Z - Z.mean(axis=0)))
+    for found in (streamed_pca(in_blocks(Z), 40, tolerance=motion), streamed_pca(in_blocks(Z), 40, 0)):
+        assert found.components.shape == (0, 40) and found.coordinates.shape == (60, 0)
+        assert_allclose(found.residual, motion**2, rtol=1e-12)
+        assert_allclose(found.left_out.sum(), motion**2, rtol=1e-12)
+
+
 def test_every_component_gives_every_row_back() -> None:
     Z = falling(20, 60, 0.9)
     for found in (streamed_pca(in_blocks(Z), 60, 40), streamed_pca(in_blocks(Z), 60, tolerance=1e-12)):
@@ -133,7 +142,7 @@ def test_two_passes_suffice_and_no_block_is_kept() -> None:
 
 def test_rows_that_never_change_have_one_component_of_no_energy() -> None:
     found = streamed_pca(in_blocks(np.full((9, 5), 3.0)), 5, tolerance=1e-6)
-    assert found.residual == 0 and found.rms == 0
+    assert found.residual == 0 and found.rms == 0 and len(found.components) == 0
     assert_allclose(reconstruction(found), 3.0, atol=1e-14)
 
 
@@ -150,10 +159,10 @@ def test_bad_input_is_refused() -> None:
         streamed_pca(in_blocks(Z), 8)
     with pytest.raises(ValueError, match="either m or tolerance"):
         streamed_pca(in_blocks(Z), 8, 3, tolerance=0.1)
-    with pytest.raises(ValueError, match="tolerance must be positive"):
-        streamed_pca(in_blocks(Z), 8, tolerance=0.0)
-    with pytest.raises(ValueError, match="m must be at least 1"):
-        streamed_pca(in_blocks(Z), 8, 0)
+    with pytest.raises(ValueError, match="tolerance must not be negative"):
+        streamed_pca(in_blocks(Z), 8, tolerance=-1.0)
+    with pytest.raises(ValueError, match="m must not be negative"):
+        streamed_pca(in_blocks(Z), 8, -1)
     with pytest.raises(ValueError, match="power_passes not negative"):
         streamed_pca(in_blocks(Z), 8, 2, power_passes=-1)
     with pytest.raises(ValueError, match=r"blocks must have shape \(k, 7\), got \(7, 8\)"):

@@ -71,10 +71,10 @@ def streamed_pca(
     d : int
         Length of a row.
     m : int, optional
-        Number of components; fewer come back where the data has fewer.
+        Number of components, 0 or more; fewer come back where the data has fewer.
     tolerance : float, optional
         Instead of `m`: the largest allowed root mean square, over the rows, of the length left out. The
-        sketch grows until it is met.
+        sketch grows until it is met, for 0 until all is found; none comes back if the mean alone meets it.
     power_passes : int, default 0
         Further passes that turn the sketch towards the true components: for spectra that fall slowly.
     seed : int, default 0
@@ -90,7 +90,7 @@ def streamed_pca(
     Raises
     ------
     ValueError
-        If not exactly one of `m` and `tolerance` is given or it is not positive, there are fewer than two
+        If not exactly one of `m` and `tolerance` is given or it is negative, there are fewer than two
         rows, a row has another length or holds NaN, or two passes differ.
 
     Notes
@@ -117,8 +117,9 @@ def streamed_pca(
         V, X = np.hstack([V, fresh]), np.hstack([X.reshape(stream.n_rows, -1), stream.project(fresh)])
         s, turn = _principal(X)
         if m is None:
-            left = stream.total - np.cumsum(s**2)
-            enough = int(np.count_nonzero(left > stream.n_rows * (tolerance or 0.0) ** 2)) + 1
+            left = stream.total - np.append(0.0, np.cumsum(s**2))
+            allowed = stream.n_rows * (tolerance or 0.0) ** 2
+            enough = min(int(np.count_nonzero(left > allowed)), len(s))
         else:
             enough = m
         complete = V.shape[1] >= min(d, stream.n_rows - 1) or len(s) < V.shape[1]
@@ -219,10 +220,10 @@ def _result(stream: _Stream, V: FloatArray, X: FloatArray, s: FloatArray, turn: 
 def _check(d: int, m: int | None, tolerance: float | None, power_passes: int) -> None:
     if (m is None) == (tolerance is None):
         raise ValueError(f"give either m or tolerance, got m {m} and tolerance {tolerance}")
-    if m is not None and m < 1:
-        raise ValueError(f"m must be at least 1, got {m}")
-    if tolerance is not None and not 0 < tolerance < math.inf:
-        raise ValueError(f"tolerance must be positive, got {tolerance}")
+    if m is not None and m < 0:
+        raise ValueError(f"m must not be negative, got {m}")
+    if tolerance is not None and not 0 <= tolerance < math.inf:
+        raise ValueError(f"tolerance must not be negative, got {tolerance}")
     if d < 1 or power_passes < 0:
         raise ValueError(
             f"d must be at least 1 and power_passes not negative, got d {d} and power_passes {power_passes}"

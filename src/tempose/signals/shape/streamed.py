@@ -13,7 +13,11 @@ from tempose.typing import Progress, silent
 
 
 def fit_streamed_shape(
-    space: VertexSpace, frames: ClipFrames, m: int | None, limit: float, progress: Progress = silent
+    space: VertexSpace,
+    frames: ClipFrames,
+    m: int | None,
+    limit: float,
+    progress: Progress = silent,
 ) -> FittedShape:
     """Find the principal components of a long clip.
 
@@ -36,9 +40,8 @@ def fit_streamed_shape(
         h and the coordinates; the spectrum ends with the directions looked at.
     """
     unit, T = frames.percent, frames.clip.n_frames
-    tolerance = limit / (unit * np.sqrt(T))
-    found = streamed_pca(
-        frames.blocks, space.dimension, m or None, tolerance=None if m else tolerance, progress=progress
-    )
+    # a clip that does not move at all has a limit of 0
+    tolerance = max(limit / (unit * np.sqrt(T)), 1e-14 * frames.diagonal) if m is None else None
+    found = streamed_pca(frames.blocks, space.dimension, m, tolerance=tolerance, progress=progress)
     shape = ShapeSignal(space, found.mean, found.components)
     return FittedShape(shape, found.coordinates, None, found.left_out, found.spectrum, unit)
