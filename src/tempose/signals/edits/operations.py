@@ -120,7 +120,13 @@ OPERATIONS: dict[str, Operation] = {
         replace_shape_from,
         {"source": check.texts, "target": check.texts},
         "play another mesh, by pairs of poses",
-        {"space": check.text, "use": check.whole, "ridge": check.number, "scale": check.scale},
+        {
+            "space": check.text,
+            "use": check.whole,
+            "ridge": check.number,
+            "scale": check.scale,
+            "regions": check.whole,
+        },
         reads_files=True,
     ),
 }

@@ -11,20 +11,30 @@ import numpy as np
 
 from tempose.clips import Mesh, MeshClip
 from tempose.curves import interpolating_spline
-from tempose.shape_spaces import shape_space
+from tempose.shape_spaces import GradientSpace, ShapeSpace, VertexSpace, shape_space
 from tempose.signals.placement import placed, placement_spline
 from tempose.signals.pose.fit import fit_pose_signal
 from tempose.signals.pose.signal import PoseSignal
+from tempose.signals.replace_shape.local import LocalMap, fit_local_map
 from tempose.signals.replace_shape.mixtures import Mixtures, best_mixtures
 from tempose.signals.replace_shape.poses import PoseSet, as_poses
-from tempose.signals.replace_shape.reading import PoseReader
+from tempose.signals.replace_shape.reading import PoseReader, Reading
+from tempose.signals.replace_shape.regions import regions_of
+from tempose.signals.replace_shape.synthesis import RegionalShapes
 from tempose.signals.shape.examples import shape_from_examples
+from tempose.signals.shape.signal import ShapeSignal
 from tempose.signals.signals import Signals
 from tempose.signals.windows.pose import WindowedPose
 from tempose.typing import FloatArray
 
 ILL_CONDITIONED = 1e8
 """Beyond this some poses are nearly mixtures of others, and multiples of them grow without meaning."""
+
+REGIONS = 60
+"""Regions of a mesh where the user names no number: a body's limbs get a few each."""
+
+LEAST_PAIRS = 4
+"""Fewer pairs cannot tell which regions move alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +45,8 @@ class ShapeTransfer:
     """Playing the target."""
     mixtures: Mixtures
     """The frames of the clip in terms of the source poses."""
+    local: LocalMap | None
+    """How regions of the target follow regions of the source; None: the mesh has one set of multiples."""
     warnings: tuple[str, ...]
     """What a person should know."""
 
@@ -48,6 +60,7 @@ def replace_shape(
     use: int | None = None,
     ridge: float = 0.0,
     scale: float | str = 1.0,
+    regions: int | None = None,
 ) -> ShapeTransfer:
     """Replace the shape signal by one of another mesh, through pairs of example poses.
 
@@ -66,6 +79,10 @@ def replace_shape(
         Relative to the mean diagonal of the normal equation; above 0 the motion is damped.
     scale : float or "size", default 1
         How many times as far the target travels; ``"size"``: the ratio of the reference poses' diagonals.
+    regions : int, optional
+        In how many regions source and target are compared, each region of the target with multiples of its
+        own; 0 is the paper: one set of multiples for the whole mesh. By default 60, and 0 for fewer than
+        4 pairs or a space whose coordinates are not local.
 
     Returns
     -------
@@ -95,22 +112,70 @@ def replace_shape(
     count = _check_poses(signals, q, r, use)
     name = space or signals.shape.space.name
     bodies, centre = q.aligned()
-    reader = PoseReader(shape_space(name, bodies[0], q.mesh.faces, bodies), bodies)
+    space_q = shape_space(name, bodies[0], q.mesh.faces, bodies)
+    wanted = _regions_wanted(regions, count, space_q)
+    covered = regions_of(space_q, bodies[0], q.mesh.faces, wanted) if wanted else None
+    reader = PoseReader(space_q, bodies, covered)
     ticks = _path_ticks(signals)
-    products, placements = reader.read(_unedited(signals, ticks))
-    mixtures = best_mixtures(products, count, ridge)
+    captured = reader.read(_unedited(signals, ticks))
+    mixtures = best_mixtures(captured.products, count, ridge)
+    readings = [captured, *(reader.read(V) for V in _site_meshes(signals))]
     bodies, centre_r = r.aligned()
     space_r = shape_space(name, bodies[0], r.mesh.faces, bodies)
+    if covered is None:
+        shape, X = _as_a_whole(readings, mixtures, ridge, space_r, bodies)
+        local = None
+    else:
+        covered_r = regions_of(space_r, bodies[0], r.mesh.faces, wanted)
+        shape, X, local = _by_regions(readings, reader, mixtures, space_r, bodies, covered_r)
+    placements = captured.placements
     placements[:, 4:] = centre_r + _travel_scale(scale, q, r) * (placements[:, 4:] - centre)
     new = replace(
         signals,
-        shape=shape_from_examples(space_r, space_r.encode(bodies[list(mixtures.used)])),
-        path=None if signals.path is None else interpolating_spline(ticks, mixtures.coordinates),
-        pose=_replaced_pose(signals, reader, mixtures, ridge),
+        shape=shape,
+        path=None if signals.path is None else interpolating_spline(ticks, X[0]),
+        pose=_replaced_pose(signals.pose, X[1:]),
         placement=placement_spline(placements, ticks),
         mesh=r.mesh,
     )
-    return ShapeTransfer(new, mixtures, _warnings(mixtures, q, r, scale))
+    return ShapeTransfer(new, mixtures, local, _warnings(mixtures, local, q, r, scale))
+
+
+def _as_a_whole(
+    readings: list[Reading], mixtures: Mixtures, ridge: float, space: ShapeSpace, bodies: FloatArray
+) -> tuple[ShapeSignal, list[FloatArray]]:
+    shape = shape_from_examples(space, space.encode(bodies[list(mixtures.used)]))
+    return shape, [reading.products.mix(mixtures.used, ridge).coordinates for reading in readings]
+
+
+def _by_regions(
+    readings: list[Reading],
+    reader: PoseReader,
+    mixtures: Mixtures,
+    space: ShapeSpace,
+    bodies: FloatArray,
+    regions: Any,
+) -> tuple[ShapeSignal, list[FloatArray], LocalMap]:
+    used = np.array(mixtures.used)
+    R = space.encode(bodies[used])
+    local = fit_local_map(reader.pose_products()[:, used][:, :, used], regions.products(R - R[0], R - R[0]))
+    multiples = [local.multiples(reading.regional[:, :, used]) for reading in readings]
+    shape, X = RegionalShapes(space, regions, R).signal(np.concatenate(multiples, axis=1))
+    ends = np.cumsum([a.shape[1] for a in multiples])[:-1]
+    return shape, np.split(X, ends), local
+
+
+def _regions_wanted(regions: int | None, count: int, space: ShapeSpace) -> int:
+    able = isinstance(space, VertexSpace | GradientSpace)
+    if regions is None:
+        return REGIONS if able and count >= LEAST_PAIRS else 0
+    if regions < 0 or regions == 1:
+        raise ValueError(f"regions must be 0 or 2 or more, got {regions}")
+    if regions and not able:
+        raise ValueError(f"regions need the space vertex or gradient, got {space.name}")
+    if regions and count < LEAST_PAIRS:
+        raise ValueError(f"regions need {LEAST_PAIRS} pairs or more, got {count}")
+    return regions
 
 
 def _check_poses(signals: Signals, q: PoseSet, r: PoseSet, use: int | None) -> int:
@@ -154,23 +219,32 @@ def _unedited(signals: Signals, ticks: FloatArray) -> FloatArray:
     return placed(signals.shape.vertices(x), signals.placement, ticks)
 
 
-def _replaced_pose(signals: Signals, reader: PoseReader, mixtures: Mixtures, ridge: float) -> Any:
+def _site_meshes(signals: Signals) -> list[FloatArray]:
     # a pose signal is known by its values at its sites: these are shown, read as mixtures, and refitted
-    def replaced(pose: PoseSignal) -> PoseSignal:
-        products, _ = reader.read(signals.shape.vertices(pose(pose.sites)))
-        return fit_pose_signal(pose.sites, products.mix(mixtures.used, ridge).coordinates, pose.sites)
-
-    pose = signals.pose
-    if isinstance(pose, WindowedPose):
-        return replace(pose, windows=tuple(replaced(window) for window in pose.windows))
-    return replaced(pose)
+    return [signals.shape.vertices(pose(pose.sites)) for pose in _windows(signals.pose)]
 
 
-def _warnings(mixtures: Mixtures, q: PoseSet, r: PoseSet, scale: float | str) -> tuple[str, ...]:
+def _windows(pose: Any) -> tuple[PoseSignal, ...]:
+    return pose.windows if isinstance(pose, WindowedPose) else (pose,)
+
+
+def _replaced_pose(pose: Any, X: list[FloatArray]) -> Any:
+    fitted = tuple(fit_pose_signal(g.sites, x, g.sites) for g, x in zip(_windows(pose), X))
+    return replace(pose, windows=fitted) if isinstance(pose, WindowedPose) else fitted[0]
+
+
+def _warnings(
+    mixtures: Mixtures, local: LocalMap | None, q: PoseSet, r: PoseSet, scale: float | str
+) -> tuple[str, ...]:
     found = [
         f"{len(mixtures.used)} of {len(q)} pairs used ({', '.join(map(str, mixtures.used))}); their mixtures "
         f"leave {mixtures.residual:.2f} of the motion's spread (rms) that they cannot show"
     ]
+    if local is not None:
+        found.append(
+            f"of a pair's distance to the mean of the others, which predict it, {local.error:.2f} is left "
+            f"by regions, {local.plain:.2f} as a whole"
+        )
     if mixtures.condition > ILL_CONDITIONED:
         found.append(
             f"the poses are nearly mixtures of one another (condition {mixtures.condition:.1e}): leave one "
