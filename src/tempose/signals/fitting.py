@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import MeshClip
+from tempose.curves import Spline
 from tempose.shape_spaces import ShapeSpace, VertexSpace, shape_space
 from tempose.signals.fidelity import SHAPE_SHARE
 from tempose.signals.frames import ClipFrames, example_vertices
@@ -22,6 +23,7 @@ from tempose.signals.shape.streamed import fit_streamed_shape
 from tempose.signals.signals import Signals
 from tempose.signals.still import still_signals
 from tempose.signals.time.path import time_path
+from tempose.signals.time.period import find_period
 from tempose.signals.time.signal import TimeSignal
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
@@ -107,7 +109,7 @@ def fit_clip(
         _note_stillness(shape, notes)
         return FittedClip(signals, shape, None, frames.diagonal, notes)
     shape, plane, f, pose = _fit_rest(frames, shape, options, pins, limit, notes)
-    path = time_path(shape.X, _period(options)) if options.between == "path" else None
+    path = _path(shape, options, notes) if options.between == "path" else None
     g: Any = turned(pose, shape.turn)
     signals = Signals(shape.shape, g, f, path, placement, (), clip.fps, clip.fps, clip.mesh)
     _note_transitions(signals, shape.X, notes)
@@ -119,13 +121,13 @@ def _fit_shape(
 ) -> tuple[FittedShape, float]:
     """Fit the shape signal; also return the tolerance it was held to."""
     clip, limit = frames.clip, options.percent
+    if options.tolerance is None:
+        limit = min(limit, LEAST_SHARE * frames.motion())
     if frames.streamed(options.m) and options.space == "vertex" and Q is None:
         with notes.stage("shape"):
             space = VertexSpace(len(clip.rest))
             return fit_streamed_shape(space, frames, options.m, SHAPE_SHARE * limit, notes.progress), limit
     V = frames.block(slice(None))
-    if options.tolerance is None:
-        limit = min(limit, LEAST_SHARE * frames.percent * float(np.linalg.norm(V - V.mean(axis=0))))
     with notes.stage("encode"):
         known = V if Q is None else np.concatenate([V, Q])
         space = shape_space(options.space, clip.rest, clip.faces, known)
@@ -192,8 +194,16 @@ def _goal(shape: FittedShape, limit: float) -> Goal:
     return Goal(base, (limit / shape.scale) ** 2 if shape.scale > 0 else np.inf)
 
 
-def _period(options: FitOptions) -> float | None:
-    return None if options.period in (None, "auto") else float(options.period)
+def _path(shape: FittedShape, options: FitOptions, notes: Notes) -> Spline:
+    """Return the time spline; of a clip that repeats, all cycles say together what lies between frames."""
+    with notes.stage("path"):
+        if options.period == "auto":
+            found = find_period(shape.straight)
+            period = None if found is None else found.ticks
+        else:
+            period = None if options.period is None else float(options.period)
+        notes.facts["period"] = period
+        return time_path(shape.X, period)
 
 
 def _note_stillness(shape: FittedShape, notes: Notes) -> None:

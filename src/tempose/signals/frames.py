@@ -81,6 +81,22 @@ class ClipFrames:
         many = self.clip.n_frames > MANY_FRAMES and (m is None or m < self.clip.n_frames // 2)
         return self.long or many
 
+    def motion(self) -> float:
+        """Return how much the clip moves.
+
+        Returns
+        -------
+        float
+            Rms percent of the diagonal by which vertices move about their means.
+        """
+        T, first = self.clip.n_frames, self.block(slice(0, 1)).reshape(-1)
+        total, moment = 0.0, np.zeros_like(first)
+        for block in self.blocks():
+            off = block - first
+            total += float(np.vdot(off, off))
+            moment += off.sum(axis=0)
+        return self.percent * float(np.sqrt(max(total - float(moment @ moment) / T, 0.0)))
+
     def block(self, frames: slice | IntArray) -> FloatArray:
         """Return some frames.
 

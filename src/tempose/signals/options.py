@@ -90,6 +90,8 @@ class FitOptions:
             raise ValueError(
                 f"l must be from 3 to {4 * T - 3} for {T} frames between which g is fitted, got {self.l}"
             )
+        if self.period not in (None, "auto") and float(self.period) >= T - 1:
+            raise ValueError(f"period must be below {T - 1} frames for a clip of {T}, got {self.period}")
         top = T - 1 if largest_m is None else largest_m
         limits = (("k", self.k, 4, T + 2), ("l", self.l, 3, max(T, 3)), ("m", self.m, 0, top))
         for name, value, low, high in limits:
