@@ -16,9 +16,10 @@ from tempose.typing import FloatArray, IntArray
 
 _ROUNDS = 6
 _AGREED = 1e-11
-_ABOVE_NOISE = 1e3
 _EXACT = 1e-9
-_MANY, _FEW = 1_000_000, 3000
+_ABOVE_NOISE = 30.0
+_HOPELESS = 0.01
+_NODES = 100_000
 
 
 @numba.njit(cache=True, nogil=True)
@@ -59,8 +60,10 @@ class SignSearch:
     Notes
     -----
     Signs start as in the reference. Vertices beside an edge whose ends disagree fall into clusters; in each
-    the pattern of signs with the least disagreement is searched for by branch and bound: first a pattern
-    with none, as the numbers of a mesh have it, where a wrong branch is cut after few signs.
+    a pattern of signs is searched for by branch and bound, first one with no disagreement beyond rounding,
+    as the numbers of a mesh have it, then with ten times as much, and so on: under a low bound a wrong
+    branch is cut after few signs. Numbers far from any mesh, such as the mean of two poses, disagree
+    everywhere; there the signs of the reference stay.
     """
 
     def __init__(self, F: IntArray, n: int, ends: IntArray) -> None:
@@ -90,12 +93,11 @@ class SignSearch:
         doubt = np.zeros(len(self.ends))
         doubts(views, corners, signs, doubt)
         for _ in range(_ROUNDS):
-            # numbers of no mesh disagree a little everywhere: only what stands out is looked at
-            limit = max(_AGREED, _ABOVE_NOISE * float(np.median(doubt))) if len(doubt) else 0.0
-            before = doubt.sum()
+            before, limit = doubt.sum(), _stands_out(doubt)
             for own, around in self._clusters(np.flatnonzero(doubt > limit)):
-                if not search(views, corners, signs, own, around, _EXACT, _MANY):
-                    search(views, corners, signs, own, around, np.inf, _FEW)
+                bound, most = max(_EXACT, 0.1 * limit), doubt[around].sum()
+                while bound < most and not search(views, corners, signs, own, around, bound, _NODES):
+                    bound *= 10.0
             doubts(views, corners, signs, doubt)
             if not doubt.sum() < 0.999 * before:
                 break
@@ -116,6 +118,17 @@ class SignSearch:
             around = np.unique(self.hinges_at[at].indices).astype(np.int64)
             clusters.append((own, around))
         return clusters
+
+
+def _stands_out(doubt: FloatArray) -> float:
+    """Disagreement above which a sign is likely to be wrong; infinite where the numbers are too noisy."""
+    if len(doubt) == 0:
+        return math.inf
+    most, nearly_all = np.quantile(doubt, [0.75, 0.95])
+    if most < 0.1 * _AGREED:
+        return _AGREED
+    limit = max(_AGREED, _ABOVE_NOISE * float(nearly_all))
+    return limit if limit < _HOPELESS else math.inf
 
 
 def _incidence(rows: IntArray, columns: IntArray, n: int, width: int) -> Any:
