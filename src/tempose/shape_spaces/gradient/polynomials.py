@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import factorial
 
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
@@ -44,7 +45,7 @@ _QUARTER = float(np.tan(np.arccos(LEAST_COSINE) / 4) ** 2)
 
 ARCTANGENT = fitted(_arctangent, _QUARTER, 19)
 """``atan(y) / y`` in ``y^2``."""
-SINE = fitted(lambda x: np.sinc(np.sqrt(x) / np.pi), np.pi**2 / 4, 9)
+SINE = tuple((-1) ** k / factorial(2 * k + 1) for k in range(11))
 """``sin(r) / r`` in ``r^2``, r up to a right angle."""
-COSINE = fitted(lambda x: np.cos(np.sqrt(x)), np.pi**2 / 4, 10)
+COSINE = tuple((-1) ** k / factorial(2 * k) for k in range(12))
 """``cos(r)`` in ``r^2``, r up to a right angle."""

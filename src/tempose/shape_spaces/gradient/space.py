@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from tempose._validate import as_floats
+from tempose.rotations import from_rotation_vector, to_matrix
 from tempose.shape_spaces.gradient.branches import follow_path
 from tempose.shape_spaces.gradient.faces import FaceGradients
 from tempose.shape_spaces.gradient.references import as_axes, reference_frames
@@ -15,6 +16,9 @@ from tempose.typing import FloatArray, IntArray
 
 TOGETHER = 16
 """Frames solved at once: their right-hand sides fill the widest block of the solver."""
+
+
+_SYMMETRIC = np.array([[3, 6, 7], [6, 4, 8], [7, 8, 5]])  # row of each entry of a stretch
 
 
 class GradientSpace:
@@ -159,6 +163,30 @@ class GradientSpace:
             block = slice(t, t + TOGETHER)
             self.gradients.decode(rows[block], [self._frames] * len(rows[block]), out[block])
         return out.reshape(*z.shape[:-1], self.n_vertices, 3)
+
+    def deformations(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Read rotations and stretches out of vectors, in the axes of the world.
+
+        Parameters
+        ----------
+        z : (..., d) float
+            Coordinates.
+
+        Returns
+        -------
+        rotations : (..., m, 3, 3) ndarray
+            Rotation R of every face against the rest.
+        stretches : (..., m, 3, 3) ndarray
+            Symmetric S; the deformation gradient is ``R S``.
+        """
+        z = np.asarray(z, dtype=np.float64)
+        m = self.gradients.n_faces
+        rows = np.moveaxis(z[..., : 9 * m].reshape(*z.shape[:-1], 9, m) / self.gradients.scale, -2, -1)
+        turns = to_matrix(from_rotation_vector(rows[..., :3]))
+        local = rows[..., _SYMMETRIC] * np.where(np.eye(3) == 1, 1.0, np.sqrt(0.5)) + np.eye(3)
+        rest, reference = as_axes(self.gradients.frames()), as_axes(self._frames)
+        rest_inverse = rest.swapaxes(-1, -2)
+        return reference @ turns @ rest_inverse, rest @ local @ rest_inverse
 
     def state(self) -> dict[str, FloatArray]:
         """Return what `from_state` needs.
