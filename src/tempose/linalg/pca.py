@@ -63,22 +63,46 @@ class GramPCA:
             raise ValueError(f"Z must hold one vector or more, got shape {Z.shape}")
         self.mean: FloatArray = Z.mean(axis=0)
         self._Y: FloatArray = Z - self.mean
-        s, U = _descending(_gram(self._Y))
-        first = 0
-        while (small := _below(s, first)) < len(s):
-            first, rows = small, U[:, small:].T @ self._Y
-            s[first:], turn = _descending(_gram(rows))
-            U[:, first:] = U[:, first:] @ turn
-        s[s < _ROUNDING * max(np.sqrt(len(Z)) * s[0], float(np.linalg.norm(Z)))] = 0.0
-        s[-1] = 0.0  # rows that sum to zero have one dimension less
-        self.singular_values: FloatArray = s
-        """(n,) descending, in units of Z times the root of the number of vectors."""
-        self._U: FloatArray = U
+        G = _gram(self._Y)
+        self._squares: FloatArray = np.diagonal(G).copy()
+        self._s, self._U = _descending(G)
+        self._rounding = _ROUNDING * max(np.sqrt(len(Z)) * self._s[0], float(np.linalg.norm(Z)))
+        self._s[self._s < self._rounding] = 0.0
+        self._sharp = False
+
+    @property
+    def spread(self) -> FloatArray:
+        """(n,) root of the squared sum along each component, descending; what is below 1e-7 is uncertain."""
+        return self._s
+
+    @property
+    def singular_values(self) -> FloatArray:
+        """(n,) the same to rounding, 0 from `rank` on."""
+        self._sharpen()
+        return self._s
 
     @property
     def rank(self) -> int:
         """Number of dimensions that the vectors span about their mean."""
         return int((self.singular_values > 0).sum())
+
+    def left_out(self, m: int) -> FloatArray:
+        """Return how far the vectors are from the span of the first components.
+
+        Parameters
+        ----------
+        m : int
+            Number of components, at most `rank`.
+
+        Returns
+        -------
+        (n,) ndarray
+            Squared distances.
+        """
+        rest = self._squares - np.square(self.coordinates(m)).sum(axis=1)
+        if rest.min(initial=0.0) > _SECOND_LOOK**2 * self._squares.max(initial=0.0):
+            return rest
+        return np.square(self._U[:, m:] * self.singular_values[m:]).sum(axis=1)
 
     def coordinates(self, m: int) -> FloatArray:
         """Return the vectors in the first components.
@@ -93,7 +117,8 @@ class GramPCA:
         (n, m) ndarray
             Coordinates; their columns are orthogonal and as long as the singular values.
         """
-        return self._U[:, :m] * self.singular_values[:m]
+        self._sharpen_for(m)
+        return self._U[:, :m] * self._s[:m]
 
     def components(self, m: int) -> FloatArray:
         """Return the first components.
@@ -108,12 +133,30 @@ class GramPCA:
         (m, d) ndarray
             Orthonormal rows.
         """
-        s = self.singular_values[:m]
+        self._sharpen_for(m)
+        s = self._s[:m]
         H = (self._U[:, :m] / s).T @ self._Y
         large = int((s >= _SECOND_LOOK * s[:1]).sum())
         if large < m:
             H[large:] = _orthonormal(H[large:], H[:large])
         return H
+
+    def _sharpen_for(self, m: int) -> None:
+        if m and self._s[m - 1] < _SECOND_LOOK * self._s[0]:
+            self._sharpen()
+
+    def _sharpen(self) -> None:
+        """Find small singular values from Gram matrices of their own, of the rows in their directions."""
+        if self._sharp:
+            return
+        s, U, first = self._s, self._U, 0
+        while (small := _below(s, first)) < len(s):
+            first, rows = small, U[:, small:].T @ self._Y
+            s[first:], turn = _descending(_gram(rows))
+            U[:, first:] = U[:, first:] @ turn
+        s[s < self._rounding] = 0.0
+        s[-1] = 0.0  # rows that sum to zero have one dimension less
+        self._sharp = True
 
 
 def gram_pca(Z: FloatArray, m: int | None = None) -> PrincipalComponents:

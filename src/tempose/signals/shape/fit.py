@@ -16,6 +16,9 @@ from tempose.typing import FloatArray, IntArray
 CHECKED = 24
 """Frames decoded to see what a distance of the shape space means in vertices."""
 
+_CERTAIN = 1e-5
+"""Part of the largest singular value down to which the Gram matrix of the frames knows them well."""
+
 Percent = Callable[[FloatArray, IntArray], float]
 """Encoded frames (c, d) and the numbers (c,) of the frames they stand for, to rms percent of the diagonal."""
 
@@ -33,7 +36,7 @@ class FittedShape:
     left_out: FloatArray
     """(T,) squared distance of each frame to the subspace."""
     spectrum: FloatArray
-    """(r,) root of the squared sum along each principal component, descending."""
+    """(r,) root of the squared sum along each principal component, descending; all that were looked at."""
     scale: float
     """Rms percent of the diagonal for each root of a squared sum over all frames and coordinates."""
 
@@ -84,26 +87,32 @@ def fit_shape(
         h and the coordinates.
     """
     pca = GramPCA(Z)
-    s2 = np.square(pca.singular_values)
-    beyond = np.append(np.cumsum(s2[::-1])[::-1], 0.0)[: pca.rank + 1]
-    beyond[pca.rank] = 0.0
     scale = unit
     if check is None:
-        chosen = int(np.argmax(unit * np.sqrt(beyond) <= limit)) if m is None else m
+        chosen = _by_spread(pca, limit / unit) if m is None else _at_most(pca, m)
     else:
-        chosen, scale = _by_decoding(pca, beyond, m, limit, check)
-    chosen = min(chosen, pca.rank)
+        chosen, scale = _by_decoding(pca, m, limit, check)
     shape = ShapeSignal(space, pca.mean, pca.components(chosen))
-    left_out = np.square(pca.coordinates(pca.rank)[:, chosen:]).sum(axis=1)
-    s = pca.singular_values[: pca.rank]
-    return FittedShape(shape, pca.coordinates(chosen), None, left_out, s, scale)
+    X, left_out = pca.coordinates(chosen), pca.left_out(chosen)
+    return FittedShape(shape, X, None, left_out, pca.spread, scale)
 
 
-def _by_decoding(
-    pca: GramPCA, beyond: FloatArray, m: int | None, limit: float, check: Percent
-) -> tuple[int, float]:
+def _at_most(pca: GramPCA, m: int) -> int:
+    # only a small last component asks for the rank, which costs a second look at the frames
+    known = m == 0 or pca.spread[m - 1] > _CERTAIN * pca.spread[0]
+    return m if known else min(m, pca.rank)
+
+
+def _by_spread(pca: GramPCA, limit: float) -> int:
+    s = pca.spread if limit > _CERTAIN * pca.spread[0] else pca.singular_values
+    beyond = np.append(np.cumsum(np.square(s)[::-1])[::-1], 0.0)
+    return int(np.argmax(np.sqrt(beyond) <= limit))
+
+
+def _by_decoding(pca: GramPCA, m: int | None, limit: float, check: Percent) -> tuple[int, float]:
     """Bisect for the least m whose decoded frames meet the limit; what a unit of the space is in percent."""
     X, H = pca.coordinates(pca.rank), pca.components(pca.rank)
+    beyond = np.append(np.cumsum(np.square(pca.singular_values)[::-1])[::-1], 0.0)
     frames = checked_frames(len(X))
     found: dict[int, float] = {}
 
