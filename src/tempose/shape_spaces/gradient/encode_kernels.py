@@ -32,6 +32,8 @@ AXES, TURNED, STRETCH, LOG, CHECK = (BLOCK * row for row in (0, 6, 15, 19, 22))
 """Where in the scratch begin: images p, q of the axes; turned axes; stretches xx, yy, zz, xy; rotation
 vectors; what tells whether a face is to be mended."""
 SCRATCH = BLOCK * 23
+BESIDE = math.sqrt(2.0)
+"""Weight of what stands twice in a symmetric matrix."""
 
 
 @numba.njit(cache=True, nogil=True)
@@ -183,20 +185,26 @@ def encode_faces(V: Any, corners: Any, inverse: Any, frames: Any, scale: Any, z:
     """
     m = len(scale)
     work = np.ones(SCRATCH)
-    beside = math.sqrt(2.0)
     for begin in range(0, m, BLOCK):
         count = min(BLOCK, m - begin)
         gather_axes(V, corners, inverse, begin, count, work)
         split_axes(frames, begin, count, work)
         log_between(frames, begin, count, work)
-        for c in range(3):
-            for i in range(count):
-                z[c * m + begin + i] = scale[begin + i] * work[LOG + c * BLOCK + i]
-        for c in range(3):
-            for i in range(count):
-                z[(3 + c) * m + begin + i] = scale[begin + i] * (work[STRETCH + c * BLOCK + i] - 1.0)
-        for i in range(count):
-            z[6 * m + begin + i] = beside * scale[begin + i] * work[STRETCH + 3 * BLOCK + i]
+        whole = count - count % 4
+        for i in range(0, whole, 4):
+            f = begin + i
+            k = load4(scale, f)
+            one = alike(k, 1.0)
+            for c in range(3):
+                store(z, c * m + f, k * load4(work, LOG + c * BLOCK + i))
+                store(z, (3 + c) * m + f, k * (load4(work, STRETCH + c * BLOCK + i) - one))
+            store(z, 6 * m + f, scaled(BESIDE, k) * load4(work, STRETCH + 3 * BLOCK + i))
+        for i in range(whole, count):
+            f = begin + i
+            for c in range(3):
+                z[c * m + f] = scale[f] * work[LOG + c * BLOCK + i]
+                z[(3 + c) * m + f] = scale[f] * (work[STRETCH + c * BLOCK + i] - 1.0)
+            z[6 * m + f] = BESIDE * scale[f] * work[STRETCH + 3 * BLOCK + i]
 
 
 @numba.njit(cache=True, nogil=True)

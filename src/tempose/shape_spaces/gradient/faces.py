@@ -40,7 +40,10 @@ class FaceGradients:
         self.n_vertices, self.n_faces = len(self.rest), len(self.faces)
         self.scale = np.sqrt(self.shape.shares)
         self.weigh = padded(1 / self.scale)
-        self._corners, self._inverse = 3 * self.shape.corners.ravel(), self.shape.inverse.ravel()
+        self._corners, self._inverse = (
+            (3 * self.shape.corners).ravel().astype(np.int32),
+            self.shape.inverse.ravel(),
+        )
         self._poisson = MeshPoisson(self.rest, self.faces, self.shape)
         self._pull = padded(self._poisson.pull)
         self.n_pieces = self._poisson.n_components
@@ -148,3 +151,31 @@ def padded(rows: FloatArray) -> FloatArray:
         All k numbers, then ones.
     """
     return np.concatenate([rows.ravel(), np.ones(3)])
+
+
+def as_vectors(z: FloatArray, dimension: int) -> FloatArray:
+    """Check coordinates and lay them out in rows.
+
+    Parameters
+    ----------
+    z : (..., d) float
+        Coordinates.
+    dimension : int
+        What d must be.
+
+    Returns
+    -------
+    (T, d) ndarray of float64
+        C-contiguous.
+
+    Raises
+    ------
+    ValueError
+        If d is another or a value is not finite.
+    """
+    z = np.asarray(z, dtype=np.float64)
+    rows = np.ascontiguousarray(z.reshape(-1, z.shape[-1]))
+    # the sum of squares is finite only if all are, and takes half the time of asking each
+    if rows.shape[1] == dimension and np.isfinite(np.vdot(rows, rows)):
+        return rows
+    return as_floats(rows, "z", ("T", dimension))

@@ -46,7 +46,7 @@ class MeshPoisson:
         held[first] = L.diagonal().mean()
         self._factor = SparseCholesky(L + sp.diags_array(held)).factor
         self._row = self._factor.permutation
-        self.rows = self._row[rest.corners].ravel()
+        self.rows = self._row[rest.corners].ravel().astype(np.int32)
         self.pull = corner_pulls(rest, weights)
         self.centre_weights = _centre_weights(V, F, self.component)
         self.n = n

@@ -10,7 +10,7 @@ import numpy as np
 from tempose._validate import as_floats
 from tempose.rotations import from_matrix, from_rotation_vector, polar_rotation, to_matrix, to_rotation_vector
 from tempose.shape_spaces.gradient.branches import follow_path
-from tempose.shape_spaces.gradient.faces import FaceGradients
+from tempose.shape_spaces.gradient.faces import FaceGradients, as_vectors
 from tempose.shape_spaces.gradient.references import as_axes
 from tempose.shape_spaces.gradient.space import TOGETHER
 from tempose.shape_spaces.patch.connection import mean_turn, rotations_from_steps
@@ -196,7 +196,7 @@ class PatchSpace:
             If the shape is wrong or a value is not finite.
         """
         z = np.asarray(z, dtype=np.float64)
-        rows = np.ascontiguousarray(as_floats(z.reshape(-1, z.shape[-1]), "z", ("T", self.dimension)))
+        rows = as_vectors(z, self.dimension)
         out = np.zeros((len(rows), self.n_vertices, 3))
         for t in range(0, len(rows), TOGETHER):
             block = slice(t, t + TOGETHER)
