@@ -192,3 +192,17 @@ def test_plots_and_grid(run: Run, job: Path) -> None:
         run("signals", "grid", "clip.tempose", "-o", "grid.png", "--columns", 3, "--view", "front").code == 0
     )
     assert Path("grid.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_loops_of_a_clip_and_of_its_model(run: Run, job: Path) -> None:
+    clip = tempose.load("clip.npz")
+    twice = np.concatenate([clip.vertices, clip.vertices, clip.vertices])
+    tempose.save("twice.npz", MeshClip(twice, clip.mesh, FPS))
+    assert run("signals", "fit", "twice.npz", "-o", "twice.tempose", "--tolerance", 0.01).code == 0
+    for name in ("twice.npz", "twice.tempose"):
+        ran = run("signals", "loops", name, "--json")
+        assert ran.code == 0, ran.err
+        found = json.loads(ran.out)
+        best = found["loops"][0]
+        assert (best["frames"] % T, best["to"] - best["from"], best["grade"]) == (0, best["frames"], "exact")
+    assert '{"op": "close_loop", "from": ' in run("signals", "loops", "twice.tempose").err

@@ -7,6 +7,7 @@ import typer
 from tempose.cli.signals_design import design
 from tempose.cli.signals_edit import edit
 from tempose.cli.signals_fit import fit
+from tempose.cli.signals_loops import loops
 from tempose.cli.signals_pictures import grid, plot
 from tempose.cli.signals_sample import sample
 
@@ -26,6 +27,7 @@ def signals_(context: typer.Context) -> None:  # numpydoc ignore=PR01
 signals.command()(fit)
 signals.command()(sample)
 signals.command()(edit)
+signals.command()(loops)
 signals.command()(plot)
 signals.command()(grid)
 signals.command()(design)

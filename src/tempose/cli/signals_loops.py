@@ -1,0 +1,88 @@
+"""`tempose signals loops`: where a clip could be played round and round."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import tempose
+from tempose.cli.console import note, progress_bar, show_json, show_table
+from tempose.cli.options import Clip, Group, Json
+from tempose.cli.signals_options import InputFps, InputUnit, InputUp, load_signals
+
+if TYPE_CHECKING:
+    from tempose.signals.loops import Loop
+    from tempose.typing import FloatArray
+
+LoopInput = Annotated[
+    str, typer.Argument(metavar="CLIP|MODEL", help="A moving mesh, or what `tempose signals fit` wrote.")
+]
+Most = Annotated[int, typer.Option(metavar="N", min=1, help="How many are listed.")]
+Shortest = Annotated[int, typer.Option(metavar="FRAMES", min=2, help="Shorter loops are not looked for.")]
+
+
+def loops(  # numpydoc ignore=PR01
+    file: LoopInput,
+    most: Most = 8,
+    shortest: Shortest = 6,
+    up: InputUp = None,
+    unit: InputUnit = None,
+    fps: InputFps = None,
+    group: Group = None,
+    clip: Clip = None,
+    json: Json = False,
+) -> None:
+    """Find parts that can be played round and round, the best first."""
+    from tempose.signals.loops import find_loops
+    from tempose.signals.time.period import find_period
+
+    reading: dict[str, Any] = {"up": up, "unit": unit, "fps": fps, "group": group, "clip": clip}
+    X, rate = _coordinates(file, reading)
+    found, period = find_loops(X, shortest, most), find_period(X)
+    ticks = None if period is None else period.ticks
+    if json:
+        show_json({"period": ticks, "fps": rate, "loops": [_facts(loop) for loop in found]})
+        return
+    if found:
+        rows = [_row(loop, rate) for loop in found]
+        show_table(rows, ("from", "to", "frames", "seconds", "jump, steps", "change of speed", ""))
+        entry = f'{{"op": "close_loop", "from": {found[0].start}, "to": {found[0].stop}}}'
+        if found[0].grade == "needs a transition":
+            note(f"none comes back smoothly; {entry} would insert frames to bridge the jump")
+        else:
+            note(f"to keep the first, as an entry of an edit list: {entry}")
+    else:
+        note(f"no loop of {shortest} frames or more: the clip never comes near a pose it has been in")
+    if ticks is not None:
+        note(f"the clip repeats every {ticks:.4g} frames ({ticks / rate:.3g} s)")
+
+
+def _coordinates(file: str, reading: dict[str, Any]) -> tuple[FloatArray, float]:
+    if Path(file).suffix.lower() == ".tempose":
+        signals = load_signals(Path(file)).signals_
+        return signals.coordinates(signals.times), signals.fps
+    from tempose.signals.loops.of_clip import clip_coordinates, travels
+
+    with progress_bar() as progress:
+        source = tempose.formats.load_clip(file, progress=progress, **reading)
+    note(tempose.formats.describe(source))
+    placement = travels(source)
+    if placement:
+        note("the body travels: where it stands and which way it faces is left out of the comparison")
+    try:
+        with progress_bar() as progress:
+            return clip_coordinates(source, placement, progress), source.fps
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
+
+
+def _facts(loop: Loop) -> dict[str, Any]:
+    facts: dict[str, Any] = {"from": loop.start, "to": loop.stop, "frames": loop.period}
+    return facts | {"distance": loop.distance, "velocity": loop.velocity, "grade": loop.grade}
+
+
+def _row(loop: Loop, fps: float) -> list[str]:
+    numbers = (f"{loop.period / fps:.3g}", f"{loop.distance:.3f}", f"{loop.velocity:.2f}")
+    return [str(loop.start), str(loop.stop), str(loop.period), *numbers, loop.grade]
