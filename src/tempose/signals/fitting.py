@@ -27,6 +27,7 @@ from tempose.signals.time.period import find_period
 from tempose.signals.time.signal import TimeSignal
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
+MEASURED_VERTICES = 1000
 LEAST_SHARE = 0.05
 """Without a tolerance given, at most so much of a clip's own motion is left out."""
 
@@ -109,7 +110,7 @@ def fit_clip(
         _note_stillness(shape, notes)
         return FittedClip(signals, shape, None, frames.diagonal, notes)
     shape, plane, f, pose = _fit_rest(frames, shape, options, pins, limit, notes)
-    path = _path(shape, options, notes) if options.between == "path" else None
+    path = _path(frames, shape, options, notes) if options.between == "path" else None
     g: Any = turned(pose, shape.turn)
     signals = Signals(shape.shape, g, f, path, placement, (), clip.fps, clip.fps, clip.mesh)
     _note_transitions(signals, shape.X, notes)
@@ -194,16 +195,24 @@ def _goal(shape: FittedShape, limit: float) -> Goal:
     return Goal(base, (limit / shape.scale) ** 2 if shape.scale > 0 else np.inf)
 
 
-def _path(shape: FittedShape, options: FitOptions, notes: Notes) -> Spline:
+def _path(frames: ClipFrames, shape: FittedShape, options: FitOptions, notes: Notes) -> Spline:
     """Return the time spline; of a clip that repeats, all cycles say together what lies between frames."""
     with notes.stage("path"):
         if options.period == "auto":
-            found = find_period(shape.straight)
+            found = find_period(_places(frames, shape))
             period = None if found is None else found.ticks
         else:
             period = None if options.period is None else float(options.period)
         notes.facts["period"] = period
         return time_path(shape.X, period)
+
+
+def _places(frames: ClipFrames, shape: FittedShape) -> FloatArray:
+    # where vertices are tells more about a period than angles and stretches of small faces do
+    if isinstance(shape.shape.space, VertexSpace):
+        return shape.straight
+    V = frames.block(slice(None))
+    return V[:, :: max(V.shape[1] // MEASURED_VERTICES, 1)].reshape(len(V), -1)
 
 
 def _note_stillness(shape: FittedShape, notes: Notes) -> None:

@@ -57,7 +57,7 @@ def find_period(X: FloatArray) -> Period | None:
         return None
     found = [_refined(X, ticks) for ticks in _candidates(X)]
     found = [(ticks, error) for ticks, error in found if error < _CLEARLY * cubic]
-    if not found:
+    if not found or _ambiguous(found, 0.05 * cubic):
         return None
     # of a period of whole frames any fraction predicts each frame by its twin: what lies between tells more
     least = min(error for _, error in found)
@@ -66,6 +66,15 @@ def find_period(X: FloatArray) -> Period | None:
     good = [f for f, error in zip(found, between) if error <= 1.05 * between.min() + 1e-12 * scale]
     ticks, error = min(good)
     return Period(ticks, error, cubic)
+
+
+def _ambiguous(found: list[tuple[float, float]], small: float) -> bool:
+    # few frames suit several periods: two that have nothing to do with each other and do about as well
+    best, least = min(found, key=lambda f: f[1])
+    if least < small:
+        return False
+    ratios = [max(ticks, best) / min(ticks, best) for ticks, error in found if error < 1.25 * least]
+    return any(abs(ratio - round(ratio)) > 0.06 * ratio for ratio in ratios)
 
 
 def _main_modes(X: FloatArray) -> FloatArray:
@@ -142,7 +151,7 @@ def _refined(X: FloatArray, ticks: float) -> tuple[float, float]:
         trials = np.concatenate([ticks + width * np.linspace(-1, 1, 9), [np.round(ticks)]])
         errors = phase_errors(X, trials, SAME_PHASE, False)
         # a whole number of frames is the likelier reading
-        near = abs(trials[-1] - ticks) < 0.5 * ticks / len(X)
+        near = abs(trials[-1] - ticks) < 0.1 * ticks / len(X)
         best = len(trials) - 1 if near and errors[-1] <= 1.05 * errors.min() else int(np.argmin(errors[:-1]))
         ticks, error = float(trials[best]), float(errors[best])
         width *= 0.25
