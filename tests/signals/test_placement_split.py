@@ -146,6 +146,28 @@ def test_placing_any_batch_is_rotating_and_moving(batch: tuple[int, ...]) -> Non
     assert_allclose(in_body(found, placements), V, atol=1e-12)
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_placing_into_an_array_or_in_place_is_the_same(dtype: type) -> None:
+    random = np.random.default_rng(4)
+    V, placements = random.standard_normal((6, 5, 3)).astype(dtype), random.standard_normal((6, 7))
+    placements[2, :4] = 0
+    for move in (place, in_body):
+        plain = move(V, placements)
+        assert plain.dtype == dtype
+        assert_allclose(plain, move(V.astype(np.float64), placements), atol=1e-6)
+        room = np.zeros((5, 6, 3), dtype).transpose(1, 0, 2)
+        for out in (np.zeros_like(V), room, V.copy()):
+            assert move(V, placements, out) is out
+            np.testing.assert_array_equal(out, plain)
+        own = V.copy()
+        move(own, placements, own)
+        np.testing.assert_array_equal(own, plain)
+        np.testing.assert_array_equal(move(V, placements[0])[3], move(V[3], placements[0]))
+    assert_allclose(place(V, placements)[2], V[2] + placements[2, 4:].astype(dtype), atol=1e-6)
+    with pytest.raises(ValueError, match="out must have shape"):
+        place(V, placements, V[:3])
+
+
 def test_placed_places_only_where_there_is_a_placement() -> None:
     V, truth = wobbling(9), tumbling(9)
     assert placed(V, None, np.arange(9.0)) is V

@@ -110,8 +110,8 @@ class ClipFrames:
         (k, n, 3) ndarray of float64
             Vertices, about the body's own origin if the placement is split off.
         """
-        V = np.asarray(self.clip.vertices[frames], dtype=np.float64)
-        return V if self.placements is None else in_body(V, self.placements[frames])
+        V = np.array(self.clip.vertices[frames], dtype=np.float64)
+        return V if self.placements is None else in_body(V, self.placements[frames], V)
 
     def blocks(self) -> Iterator[FloatArray]:
         """Yield the frames in blocks, in order, flattened.

@@ -70,14 +70,8 @@ def evaluate(
     (..., n, 3) ndarray
         Positions, metres.
     """
-    x = signals.coordinates(times)
-    if signals.placement is None:
-        return signals.shape.vertices(x, dtype, out)
-    V = placed(signals.shape.vertices(x), signals.placement, signals.ticks(times))
-    if out is None:
-        return V.astype(dtype, copy=False)
-    out[...] = V
-    return out
+    V = signals.shape.vertices(signals.coordinates(times), dtype, out)
+    return placed(V, signals.placement, signals.ticks(times), V)
 
 
 def _blocks(signals: Signals, count: int) -> Iterator[slice]:
