@@ -76,15 +76,14 @@ def splice_spline(
     """
     n = len(pieces)
     whole = [spline] * (n + 1)
-    if motions is not None:
+    if motions is not None:  # where closed the last one is the first piece anew
         whole = [spline, *(spline.with_controls(motion(spline.controls)) for motion in motions[1:])]
     parts = [with_inner_knots(_piece(curve, piece), 3) for curve, piece in zip(whole, pieces)]
     out = list(parts)
     bridges: dict[int, Spline] = {}
     for i in range(n if closed else n - 1):
         j, seam = (i + 1) % n, seams[i]
-        following = parts[j] if motions is None or j > 0 else _piece(whole[n], pieces[0])
-        left, right = _end_state(parts[i], at_end=True), _end_state(following, at_end=False)
+        left, right = _state(whole[i], pieces[i], 1), _state(whole[i + 1], pieces[j], 0)
         if seam.gap > 0:
             bridges[i] = bridge(left, right, seam.gap)
             continue
@@ -105,9 +104,10 @@ def _piece(spline: Spline, piece: Piece) -> Spline:
     return part if piece[0] < piece[1] else part.reversed()
 
 
-def _end_state(part: Spline, *, at_end: bool) -> FloatArray:
-    u = part.domain[1 if at_end else 0]
-    return np.stack([part(u, order) for order in range(3)])
+def _state(curve: Spline, piece: Piece, end: int) -> FloatArray:
+    # of the curve the piece is cut from: beside a sliver of a span the piece's own derivatives are rounding
+    way = 1.0 if piece[1] > piece[0] else -1.0
+    return np.stack([way**order * curve(piece[end], order) for order in range(3)])
 
 
 def _moved_back(offset: Offset, motions: Sequence[Motion] | None) -> Offset:
