@@ -13,6 +13,9 @@ _SECOND_LOOK = 1e-3
 """Singular values below this part of the largest are found from a Gram matrix of their own: squares lose half
 the digits, so the first one knows them, and the angles of their components, to 1e-10 only."""
 
+_CERTAIN = 1e-5
+"""Singular values above this part of the largest are no rounding, whatever is still to be found."""
+
 _ROUNDING = 1e-14
 """Singular values below this part of the largest, or of the vectors themselves, are rounding."""
 
@@ -27,7 +30,8 @@ class PrincipalComponents(NamedTuple):
     coordinates: FloatArray
     """(n, r) of the vectors in that basis."""
     singular_values: FloatArray
-    """(n,) all of them, descending; from r on what is left out."""
+    """(n,) all of them, descending; from r on what is left out. Of few components that suffice: values below
+    1e-7 of the largest are uncertain."""
 
 
 class GramPCA:
@@ -85,6 +89,22 @@ class GramPCA:
     def rank(self) -> int:
         """Number of dimensions that the vectors span about their mean."""
         return int((self.singular_values > 0).sum())
+
+    def at_most(self, m: int) -> int:
+        """Return how many of the first components there are.
+
+        Parameters
+        ----------
+        m : int
+            Number asked for.
+
+        Returns
+        -------
+        int
+            `m`, or `rank` where that is less.
+        """
+        known = m == 0 or (m < len(self._s) and self._s[m - 1] > _CERTAIN * self._s[0])
+        return m if known else min(m, self.rank)
 
     def left_out(self, m: int) -> FloatArray:
         """Return how far the vectors are from the span of the first components.
@@ -182,8 +202,8 @@ def gram_pca(Z: FloatArray, m: int | None = None) -> PrincipalComponents:
     if m is not None and m < 0:
         raise ValueError(f"m must be 0 or more, got {m}")
     pca = GramPCA(Z)
-    r = pca.rank if m is None else min(m, pca.rank)
-    return PrincipalComponents(pca.mean, pca.components(r), pca.coordinates(r), pca.singular_values)
+    r = pca.rank if m is None else pca.at_most(m)
+    return PrincipalComponents(pca.mean, pca.components(r), pca.coordinates(r), pca.spread)
 
 
 def _below(s: FloatArray, first: int) -> int:

@@ -89,7 +89,7 @@ def fit_plane(
         P, middles = _laid_out(X, options, pins, notes)
     with notes.stage("pose"):
         samples = (P, X) if len(middles) == 0 else _with_middles(P, X, middles)
-        order = order_sites(*samples)
+        order = order_sites(*samples, most=options.l)
         l = options.l
         if l is None:
             l = choose_sites(order.errors, goal.base, POSE_SHARE**2 * goal.total)

@@ -106,6 +106,10 @@ def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np
     """
     times = np.asarray(times, dtype=np.float64)
     shape = (*times.shape, signals.shape.space.n_vertices, 3)
+    if out is None and times.ndim == 0:
+        if not math.isfinite(times):
+            raise ValueError(f"times must be finite, got {times}")
+        return evaluate(signals, times, dtype)
     if out is None:
         _check_room(shape, dtype)
     flat = as_floats(times.reshape(-1), "times", ("K",))

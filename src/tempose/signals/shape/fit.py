@@ -89,18 +89,12 @@ def fit_shape(
     pca = GramPCA(Z)
     scale = unit
     if check is None:
-        chosen = _by_spread(pca, limit / unit) if m is None else _at_most(pca, m)
+        chosen = _by_spread(pca, limit / unit) if m is None else pca.at_most(m)
     else:
         chosen, scale = _by_decoding(pca, m, limit, check)
     shape = ShapeSignal(space, pca.mean, pca.components(chosen))
     X, left_out = pca.coordinates(chosen), pca.left_out(chosen)
     return FittedShape(shape, X, None, left_out, pca.spread, scale)
-
-
-def _at_most(pca: GramPCA, m: int) -> int:
-    # only a small last component asks for the rank, which costs a second look at the frames
-    known = m == 0 or pca.spread[m - 1] > _CERTAIN * pca.spread[0]
-    return m if known else min(m, pca.rank)
 
 
 def _by_spread(pca: GramPCA, limit: float) -> int:
