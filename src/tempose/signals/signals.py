@@ -48,6 +48,9 @@ class Signals:
     """Topology, UVs, groups and name of what is played."""
     origin: Origin | None = None
     """Ticks to ticks of the captured clip, once pieces of it were cut, pasted or repeated; None: the same."""
+    fade_step: float | None = None
+    """The step of `FADE`, kept from the first control moved on: cuts and loops change the median step and
+    must not change what moved controls show. None: `pose_step`."""
 
     @property
     def duration(self) -> float:
@@ -129,7 +132,8 @@ class Signals:
         return x
 
     def _share_of_path(self, moved: FloatArray) -> FloatArray:
-        start, stop = FADE[0] * self.pose_step, FADE[1] * self.pose_step
+        step = self.pose_step if self.fade_step is None else self.fade_step
+        start, stop = FADE[0] * step, FADE[1] * step
         s = np.clip((moved - start) / max(stop - start, np.finfo(float).tiny), 0.0, 1.0)
         return 1.0 - s * s * (3.0 - 2.0 * s)
 

@@ -107,4 +107,7 @@ def _with_control(signals: Signals, i: int, at: FloatArray) -> Signals:
     curve = signals.time.curve
     controls = curve.controls.copy()
     controls[i] = at
-    return replace(signals, time=replace(signals.time, curve=Spline(curve.knots, controls)))
+    step = signals.pose_step if signals.fade_step is None else signals.fade_step
+    return replace(
+        signals, time=replace(signals.time, curve=Spline(curve.knots, controls)), fade_step=step
+    )

@@ -149,7 +149,8 @@ def _laid_out(
     curve = _through(fitted.curve, parameters[list(pins)], np.array([*pins.values()]).reshape(-1, 2))
     time = TimeSignal(curve, curve, monotone_map(ticks, parameters))
     pose = pose or _pose_signal(signals, P, turned)
-    return replace(signals, pose=pose, time=time, path=_played_path(signals, ticks))
+    path = _played_path(signals, ticks)
+    return replace(signals, pose=pose, time=time, path=path, fade_step=None)
 
 
 def _pose_signal(signals: Signals, P: FloatArray, turned: FloatArray) -> PoseSignal:
