@@ -75,26 +75,35 @@ def test_rotation_vectors_agree_with_scipy_at_every_angle(rng) -> None:
 @pytest.mark.parametrize("faces", [1, 2, 3, 4, 5, 127, 128, 129, 131])
 def test_the_right_hand_side_is_that_of_a_loop(faces: int, rng) -> None:
     """Any number of faces, rotations of many turns, stretches of no face."""
-    z, frames = rng.normal(size=(9, faces)), Rotation.random(faces, rng=rng).as_matrix()
-    z[:3] *= rng.uniform(0, 30, faces)
-    z[:3, 0] = 0
+    z = rng.normal(size=(2, 9, faces))
+    frames = Rotation.random(2 * faces, rng=rng).as_matrix().reshape(2, faces, 3, 3)
+    z[:, :3] *= rng.uniform(0, 30, faces)
+    z[:, :3, 0] = 0
     pull, weigh = rng.normal(size=(4, faces)), rng.uniform(0.5, 2, faces)
     n, wide = 20, 8
     rows = rng.integers(0, n, size=(3, faces))
     start = rng.normal(size=(n + 1, wide))
-    X = start.copy()
-    flat = padded(frames.transpose(2, 1, 0).reshape(9, -1))
-    decode_faces(padded(z), flat, padded(weigh), padded(pull), rows.ravel(), 3, wide, X.reshape(-1))
-    slow = start.copy()
+    flat = np.stack([padded(axes.transpose(2, 1, 0).reshape(9, -1)) for axes in frames])
+    vectors, constants = (
+        np.stack([padded(row) for row in z]).ravel(),
+        (padded(weigh), padded(pull), rows.ravel()),
+    )
+    for step, of_second in ((flat.shape[1], 1), (0, 0)):
+        X, slow = start.copy(), start.copy()
+        decode_faces(vectors, flat.shape[1], flat.ravel(), step, *constants, wide, X.reshape(-1))
+        for t, N in enumerate((frames[0], frames[of_second])):
+            add_slowly(weigh * z[t], N, pull, rows, slow[:, 3 * t : 3 * t + 3])
+        assert_allclose(X, slow, atol=1e-12)
+
+
+def add_slowly(z: np.ndarray, N: np.ndarray, pull: np.ndarray, rows: np.ndarray, X: np.ndarray) -> None:
     r = np.sqrt(0.5)
-    for f in range(faces):
-        w, (xx, yy, zz, xy, xz, yz) = weigh[f] * z[:3, f], weigh[f] * z[3:, f]
+    for f, (w, (xx, yy, zz, xy, xz, yz)) in enumerate(zip(z[:3].T, z[3:].T)):
         S = np.eye(3) + np.array([[xx, r * xy, r * xz], [r * xy, yy, r * yz], [r * xz, r * yz, zz]])
-        T = frames[f] @ Rotation.from_rotvec(w).as_matrix() @ S
+        T = N[f] @ Rotation.from_rotvec(w).as_matrix() @ S
         a, b = T @ [*pull[:2, f], 0], T @ [*pull[2:, f], 0]
         for row, change in zip(rows[:, f], (-(a + b), a, b)):
-            slow[row, 3:6] += change
-    assert_allclose(X, slow, atol=1e-12)
+            X[row] += change
 
 
 def test_the_nearest_branch_is_found_among_all(rng) -> None:
@@ -125,11 +134,14 @@ def test_centres_and_vertices_are_those_of_numpy(rng) -> None:
     centres(V.ravel(), component, weights, out)
     expected = np.stack([(weights[:, None] * V)[component == c].sum(axis=0) for c in range(3)])
     assert_allclose(out, expected, atol=1e-15)
-    row, X, to, W = rng.permutation(6), rng.normal(size=(7, 8)), rng.normal(size=(3, 3)), np.zeros((6, 3))
-    write_vertices(X, 3, row, component, weights, to, W)
-    centres(W.ravel(), component, weights, out)
-    assert_allclose(out, to, atol=1e-14)
-    assert_allclose(W - X[row, 3:6], (W - X[row, 3:6])[[0, 1, 0, 3, 1, 0]], atol=1e-14)
+    row, X, to, W = rng.permutation(6), rng.normal(size=(7, 8)), rng.normal(size=(3, 6)), np.zeros((2, 6, 3))
+    write_vertices(X, row, component, weights, to, W)
+    for t in range(2):
+        columns = slice(3 * t, 3 * t + 3)
+        centres(W[t].ravel(), component, weights, out)
+        assert_allclose(out, to[:, columns], atol=1e-14)
+        shift = W[t] - X[row, columns]
+        assert_allclose(shift, shift[[0, 1, 0, 3, 1, 0]], atol=1e-14)
 
 
 def test_polynomials_are_exact_to_rounding() -> None:

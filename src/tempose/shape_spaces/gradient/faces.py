@@ -112,25 +112,25 @@ class FaceGradients:
         places -= self._centres
         places *= self._place_scale
 
-    def decode(self, z: FloatArray, frames: list[FloatArray], out: FloatArray) -> None:
+    def decode(self, z: FloatArray, frames: FloatArray, out: FloatArray) -> None:
         """Rebuild meshes; those of one call are solved together.
 
         Parameters
         ----------
         z : (T, d) float
             Coordinates, C-contiguous.
-        frames : list of T (9 m + 3,) ndarray
-            Frames from which rotations are counted.
+        frames : (9 m + 3,) or (T, 9 m + 3) ndarray
+            Frames from which rotations are counted, the same for all vectors or not.
         out : (T, n, 3) ndarray
             Written: vertices, metres.
         """
         X = self._poisson.sides(len(z))
         columns, wide = X.reshape(-1), X.shape[1]
-        to = np.zeros((len(z), self.n_pieces, 3))
-        for t, row in enumerate(z):
-            decode_faces(row, frames[t], self.weigh, self._pull, self._poisson.rows, 3 * t, wide, columns)
-            to[t] = self._centres + self._places(row) / self._place_scale
-        self._poisson.solve(X, to, out)
+        step = frames.shape[-1] if frames.ndim == 2 else 0
+        weigh, pull, rows = self.weigh, self._pull, self._poisson.rows
+        decode_faces(z.reshape(-1), z.shape[1], frames.reshape(-1), step, weigh, pull, rows, wide, columns)
+        to = self._centres[:, None] + np.stack([self._places(row) / self._place_scale for row in z], axis=1)
+        self._poisson.solve(X, to.reshape(self.n_pieces, -1), out)
 
     def _places(self, z: FloatArray) -> FloatArray:
         """Places of the pieces (c, 3) of one vector, a view."""

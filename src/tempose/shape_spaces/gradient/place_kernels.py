@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numba
-import numpy as np
 
 from tempose.linalg.lanes import item
+
+TILE = 64
 
 
 @numba.njit(cache=True, nogil=True)
@@ -33,35 +34,32 @@ def centres(V: Any, component: Any, weights: Any, out: Any) -> None:
 
 
 @numba.njit(cache=True, nogil=True)
-def write_vertices(X: Any, at: Any, row: Any, component: Any, weights: Any, to: Any, out: Any) -> None:
+def write_vertices(X: Any, row: Any, component: Any, weights: Any, to: Any, out: Any) -> None:
     """Move every piece so that its centre comes to its place.
 
     Parameters
     ----------
     X : (n + 1, k) ndarray
-        Solutions, in rows of the factor.
-    at : int
-        First of three columns.
+        Solutions, in rows of the factor; frame t has the columns 3 t to 3 t + 3.
     row : (n,) int ndarray
         Row of each vertex.
     component, weights : (n,) ndarray
         As in `centres`.
-    to : (pieces, 3) ndarray
+    to : (pieces, 3 T) ndarray
         Places of the centres.
-    out : (n, 3) ndarray
+    out : (T, n, 3) ndarray
         Written.
     """
-    shift = np.zeros(to.shape)
-    for v in range(len(row)):
+    n, columns = len(row), to.shape[1]
+    shift = to.copy()
+    for v in range(n):
         c, w, r = component[v], weights[v], row[v]
-        for d in range(3):
-            x = X[r, at + d]
-            out[v, d] = x
-            shift[c, d] += w * x
-    for c in range(len(to)):
-        for d in range(3):
-            shift[c, d] = to[c, d] - shift[c, d]
-    for v in range(len(row)):
-        c = component[v]
-        for d in range(3):
-            out[v, d] += shift[c, d]
+        for k in range(columns):
+            shift[c, k] -= w * X[r, k]
+    # some vertices at a time: their rows stay in the cache while the frames are written one by one
+    for begin in range(0, n, TILE):
+        for t in range(len(out)):
+            for v in range(begin, min(begin + TILE, n)):
+                c, r = component[v], row[v]
+                for d in range(3):
+                    out[t, v, d] = X[r, 3 * t + d] + shift[c, 3 * t + d]

@@ -86,14 +86,13 @@ class MeshPoisson:
         ----------
         X : (n + 1, k) ndarray
             Right-hand sides as of `sides`, filled; overwritten.
-        to : (T, pieces, 3) float
-            Where the centres go, metres.
+        to : (pieces, 3 T) float
+            Where the centres go, metres, frame after frame.
         out : (T, n, 3) ndarray
             Written: vertices, metres.
         """
         self._factor.solve_rows(X)
-        for t in range(len(out)):
-            write_vertices(X, 3 * t, self._row, self.component, self.centre_weights, to[t], out[t])
+        write_vertices(X, self._row, self.component, self.centre_weights, to, out)
 
 
 def corner_weights(rest: RestFaces) -> FloatArray:

@@ -161,7 +161,7 @@ class GradientSpace:
         out = np.zeros((len(rows), self.n_vertices, 3))
         for t in range(0, len(rows), TOGETHER):
             block = slice(t, t + TOGETHER)
-            self.gradients.decode(rows[block], [self._frames] * len(rows[block]), out[block])
+            self.gradients.decode(rows[block], self._frames, out[block])
         return out.reshape(*z.shape[:-1], self.n_vertices, 3)
 
     def deformations(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -200,7 +200,7 @@ class PatchSpace:
         out = np.zeros((len(rows), self.n_vertices, 3))
         for t in range(0, len(rows), TOGETHER):
             block = slice(t, t + TOGETHER)
-            frames = [self.gradients.frames() for _ in rows[block]]
+            frames = np.ones((len(rows[block]), len(self._mean)))
             for P, turned in zip(self._solved_rotations(rows[block]), frames):
                 turn_frames(P, self.patches.of_face, self._mean, turned)
             self.gradients.decode(rows[block], frames, out[block])
