@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,19 +11,20 @@ from scipy.spatial.distance import pdist, squareform
 from tempose._validate import as_floats, read_only
 from tempose.curves import Spline, interpolating_spline
 from tempose.signals.pose.judge import Judgement, aspect_ratio, curve_through, judge_layout
-from tempose.signals.pose.layout import PoseLayout
+from tempose.signals.pose.layout import PoseLayout, stress_of
 from tempose.signals.pose.pins import Pins, check_pins
+from tempose.signals.pose.smoothing import main_columns, smooth_transitions
 from tempose.signals.pose.time_graph import time_graph_distances
 from tempose.typing import FloatArray, IntArray
 
-REACHES = (np.inf, 4.0, 3.0, 2.5, 2.0)
-"""Reaches tried, in steps: see `time_graph_distances`."""
+REACHES = (4.0, 3.0, 2.5, 2.0)
+"""Reaches of time graphs tried, in steps: see `time_graph_distances`."""
 
 LEAST_ASPECT = 0.2
 """A layout flatter than this has become a line along time."""
 
-_LADDER = (np.inf, 4.0, 3.0, 2.5, 2.0, 1.5)
-_ROUNDS = 8
+LONGEST = 600
+"""Clips of more frames are laid out but not smoothed: a step takes the cube of the frames."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +34,7 @@ class LayoutChoice:
     positions: FloatArray
     """(n, 2) places of the frames."""
     name: str
-    """How it was made: ``"mds"``, ``"time graph 4"``, ``"local"``, with ``" + middles"`` if there are any."""
+    """How it was made, such as ``"mds"`` or ``"mds, smoothed"``; with ``" + middles"`` where there are any."""
     bad: IntArray
     """(b,) transitions i, from frame i to i + 1, that are still bad."""
     aspect: float
@@ -85,29 +87,47 @@ def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
     Returns
     -------
     LayoutChoice
-        Plain scaling where its transitions are good; else the first layout of distances along the motion
-        that has none that are bad and is no mere line; else the best of them, repaired where it is bad.
+        Plain scaling where its transitions are good, else the first layout without bad ones, else the best.
 
     Raises
     ------
     ValueError
         If `X` is not finite or the pins contradict it.
+
+    Notes
+    -----
+    Tried in turn, each as it is and then smoothed (`smooth_transitions`): distances between poses; distances
+    between poses together with their velocities, which part similar poses in different motions; shortest
+    paths along the motion (`time_graph_distances`), for four reaches. What is still bad is given samples of
+    its own.
     """
     X = as_floats(X, "X", ("n", "m"))
     pins = {} if pins is None else pins
     distances = pose_distances(X)
-    _, _, warnings = check_pins(pins, distances)
+    frames, _, warnings = check_pins(pins, distances)
     if len(X) < 3:
         return _small(X, distances, pins, warnings)
     path = interpolating_spline(np.arange(len(X), dtype=np.float64), X)
     tried: list[Judgement] = []
-    for reach in REACHES:
-        name = "mds" if np.isinf(reach) else f"time graph {reach:g}"
-        tried.append(_attempt(name, X, distances, reach, pins, path, None))
-        if tried[-1].bad == 0 and _broad(tried[-1], tried[0]):
+    for name, target in _targets(X, distances, path):
+        result = PoseLayout(target).solve(pins)
+        tried.append(judge_layout(name, result.positions, X, result.stress, path))
+        if not _good(tried[-1], tried[0]) and tried[-1].aspect > 0 and len(X) <= LONGEST:
+            P = smooth_transitions(result.positions, main_columns(X), target, frames)
+            stress = stress_of(P, distances)
+            tried.append(judge_layout(f"{name}, smoothed", P, X, stress, path))
+        if _good(tried[-1], tried[0]):
             return _chosen(tried[-1], tried, warnings)
     best = min((t for t in tried if _broad(t, tried[0])), key=_badness)
-    return _repaired(best, tried, X, distances, pins, path, warnings)
+    return _with_middles(best, tried, X, path, warnings)
+
+
+def _targets(X: FloatArray, distances: FloatArray, path: Spline) -> Iterator[tuple[str, FloatArray]]:
+    yield "mds", distances
+    velocities = path(np.arange(len(X), dtype=np.float64), 1)
+    yield "with velocities", np.hypot(distances, pose_distances(velocities))
+    for reach in REACHES:
+        yield f"time graph {reach:g}", time_graph_distances(distances, reach)
 
 
 def pose_distances(X: FloatArray) -> FloatArray:
@@ -154,44 +174,8 @@ def _broad(judged: Judgement, plain: Judgement) -> bool:
     return judged.aspect >= min(LEAST_ASPECT, 0.5 * plain.aspect)
 
 
-def _attempt(
-    name: str,
-    X: FloatArray,
-    distances: FloatArray,
-    reach: FloatArray | float,
-    pins: Pins,
-    path: Spline,
-    start: FloatArray | None,
-) -> Judgement:
-    result = PoseLayout(time_graph_distances(distances, reach)).solve(pins, start)
-    return judge_layout(name, result.positions, X, result.stress, path)
-
-
-def _repaired(
-    best: Judgement,
-    tried: list[Judgement],
-    X: FloatArray,
-    distances: FloatArray,
-    pins: Pins,
-    path: Spline,
-    warnings: tuple[str, ...],
-) -> LayoutChoice:
-    """Shorten the reach of the frames at bad transitions only, round after round."""
-    for base in [t for t in tried if _broad(t, tried[0])][:3]:
-        level = np.full(len(X), tried.index(base))
-        current = base
-        for _ in range(_ROUNDS):
-            beside = np.flatnonzero(current.transitions.bad)
-            for i in beside:
-                level[max(i - 1, 0) : i + 3] += 1
-            level = np.minimum(level, len(_LADDER) - 1)
-            current = _attempt("local", X, distances, np.array(_LADDER)[level], pins, path, current.positions)
-            tried.append(current)
-            if _broad(current, tried[0]) and _badness(current) < _badness(best):
-                best = current
-            if best.bad == 0:
-                return _chosen(best, tried, warnings)
-    return _with_middles(best, tried, X, path, warnings)
+def _good(judged: Judgement, plain: Judgement) -> bool:
+    return judged.bad == 0 and _broad(judged, plain)
 
 
 def _with_middles(
@@ -200,13 +184,12 @@ def _with_middles(
     """Give the pose signal samples of its own where transitions are still bad."""
     middles = np.zeros(0)
     for _ in range(3):
-        middles = np.union1d(middles, np.flatnonzero(best.transitions.bad) + 0.5)
-        found = judge_layout(f"{best.name} + middles", best.positions, X, best.stress, path, middles)
-        tried.append(found)
-        if found.bad == 0:
-            return _chosen(found, tried, warnings, middles)
-    found = min(tried, key=_badness)
-    return _chosen(found, tried, warnings, middles if found is tried[-1] else np.zeros(0))
+        bad = np.flatnonzero(best.transitions.bad if len(middles) == 0 else tried[-1].transitions.bad)
+        middles = np.union1d(middles, (bad[:, None] + np.array([0.25, 0.5, 0.75])).ravel())
+        tried.append(judge_layout(f"{best.name} + middles", best.positions, X, best.stress, path, middles))
+        if tried[-1].bad == 0:
+            return _chosen(tried[-1], tried, warnings, middles)
+    return _chosen(best, tried, warnings)
 
 
 def _chosen(

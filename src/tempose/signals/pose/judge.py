@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tempose.curves import Spline, interpolating_spline, monotone_map
+from tempose.curves import Spline
 from tempose.signals.pose.crossings import find_crossings
 from tempose.signals.pose.fit import interpolating_pose_signal
 from tempose.signals.pose.transitions import PlaceMap, Transitions, find_bad_transitions
+from tempose.signals.time.fit import fit_time_signal
 from tempose.typing import FloatArray
 
 
@@ -99,8 +100,4 @@ def curve_through(P: FloatArray) -> PlaceMap:
     callable
         Ticks to places: a natural cubic spline over centripetal parameters, with a monotone pace.
     """
-    gaps = np.sqrt(np.linalg.norm(np.diff(P, axis=0), axis=1))
-    floor = 1e-3 * gaps.mean() if gaps.any() else 1.0
-    u = np.concatenate([[0.0], np.cumsum(np.maximum(gaps, floor))])
-    curve, pace = interpolating_spline(u, P), monotone_map(np.arange(len(P), dtype=np.float64), u)
-    return lambda ticks: curve(pace(ticks))
+    return fit_time_signal(P, len(P) + 2)

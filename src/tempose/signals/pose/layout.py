@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse.linalg import eigsh
+from scipy.spatial.distance import pdist, squareform
 
 from tempose._validate import as_floats, read_only
 from tempose.signals.pose._descent import descend
@@ -178,6 +179,26 @@ class PoseLayout:
         positions[frames] = places
         history = np.sqrt(stresses[:accepted] / self._total)
         return LayoutResult(positions, float(history[-1]), passes, step <= tolerance, step, history, warnings)
+
+
+def stress_of(P: FloatArray, distances: FloatArray) -> float:
+    """Return how far distances in the plane are from given ones.
+
+    Parameters
+    ----------
+    P : (n, 2) float
+        Places.
+    distances : (n, n) float
+        Target distances.
+
+    Returns
+    -------
+    float
+        ``sqrt(sum (delta - d)^2 / sum delta^2)``, as in `LayoutResult`; 0 where all targets are 0.
+    """
+    lengths = squareform(distances, checks=False)
+    total = float(np.square(lengths).sum())
+    return float(np.sqrt(np.square(lengths - pdist(P)).sum() / total)) if total > 0 else 0.0
 
 
 def align(P: FloatArray, frames: IntArray, places: FloatArray) -> FloatArray:
