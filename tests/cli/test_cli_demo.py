@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 import tempose
-from tempose.cli import demo, demo_cases
+from tempose.cli import demo, demo_cases, demo_signals
+from tempose.signals.pictures import thumbnails
 
 Run = Callable[..., Any]
 
@@ -29,6 +30,9 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(demo, "CASES", tuple(short(case) for case in demo_cases.CASES[:2]))
     for name, value in (("_CELL", 24), ("_MOMENTS", 2), ("_FILM", (24, 24))):
         monkeypatch.setattr(demo, name, value)
+        monkeypatch.setattr(demo_signals, name, value)
+    monkeypatch.setattr(demo_signals, "TRIANGLES", 2000)
+    monkeypatch.setattr(thumbnails, "FINE", 1)
 
 
 def test_demo_writes_everything_it_promises(run: Run, tmp_path: Path, small: None) -> None:
@@ -44,6 +48,13 @@ def test_demo_writes_everything_it_promises(run: Run, tmp_path: Path, small: Non
         "human_walk.png",
         "report.html",
         "report.json",
+        "signals.glb",
+        "signals.mp4",
+        "signals.png",
+        "signals.tempose",
+        "signals_plane_dark.png",
+        "signals_plane_light.png",
+        "signals_retiming.svg",
     }
     report = json.loads((out / "report.json").read_text())
     assert (report["command"], report["version"]) == ("demo", tempose.__version__)
@@ -51,6 +62,9 @@ def test_demo_writes_everything_it_promises(run: Run, tmp_path: Path, small: Non
     for transfer in report["transfers"]:
         assert transfer["title"] in ran.out
         assert transfer["flipped_percent"] == 0
+    curve = report["signals"]
+    assert curve["title"] in ran.out and curve["errors"]["rms_percent"] < 0.5 and curve["seam"] < 2
+    assert tempose.formats.load_clip(out / "signals.glb").n_frames == curve["played"]
     clip = tempose.formats.load_clip(out / "human_walk.glb")
     assert clip.n_frames == report["transfers"][0]["frames"]
 
@@ -59,7 +73,15 @@ def test_page_asks_nothing_of_the_network(run: Run, tmp_path: Path, small: None)
     assert run("demo", "-o", tmp_path, "--only", "human_walk").code == 0
     page = (tmp_path / "report.html").read_text()
     assert not re.findall(r'(?:src|href)="(?!data:|#)', page) and "@import" not in page
-    assert "A walk" in page and "A run" not in page
+    assert "A walk" in page and "A run" not in page and "as a curve" not in page
+
+
+@pytest.mark.slow
+def test_signals_alone(run: Run, tmp_path: Path, small: None) -> None:
+    assert run("demo", "-o", tmp_path, "--only", "signals").code == 0
+    page = (tmp_path / "report.html").read_text()
+    assert "as a curve" in page and "A walk" not in page
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', page)
 
 
 def test_unknown_case_lists_the_known(run: Run, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`tempose demo`: motion onto built-in characters, with pictures, a table and a page."""
+"""`tempose demo`: the methods on built-in characters, with pictures, tables and a page."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ import tempose
 from tempose.cli.console import note, progress_bar, show_table, writing
 from tempose.cli.demo_cases import CASES, Case, make_target
 from tempose.cli.demo_page import HEADER, table_row, write_page
+from tempose.cli.demo_signals import HEADER as SIGNALS_HEADER
+from tempose.cli.demo_signals import NAME as SIGNALS
+from tempose.cli.demo_signals import run_signals, signals_row
 from tempose.cli.report import make_report, write_report
 
 if TYPE_CHECKING:
@@ -31,25 +34,33 @@ def demo(  # numpydoc ignore=PR01
     ] = Path("demo"),
     only: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help=f"Only one of {', '.join(case.name for case in CASES)}."),
+        typer.Option(metavar="NAME", help=f"Only one of {', '.join(c.name for c in CASES)}, {SIGNALS}."),
     ] = None,
 ) -> None:
     """Show what Tempose does, on built-in characters; takes a few minutes and no network."""
     cases = [case for case in CASES if only in (None, case.name)]
-    if not cases:
-        raise ValueError(f"--only must be one of {', '.join(case.name for case in CASES)}, got {only!r}")
+    if not cases and only != SIGNALS:
+        known = ", ".join([*(case.name for case in CASES), SIGNALS])
+        raise ValueError(f"--only must be one of {known}, got {only!r}")
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     reports: list[dict[str, Any]] = []
+    curve: dict[str, Any] | None = None
+    count = len(cases) + (only in (None, SIGNALS))
     for i, case in enumerate(cases):
-        note(f"{i + 1} of {len(cases)}: {case.title.lower()} onto the {case.target}")
+        note(f"{i + 1} of {count}: {case.title.lower()} onto the {case.target}")
         with progress_bar() as progress, writing(out):
             reports.append(_run(case, out, progress))
+    if only in (None, SIGNALS):
+        note(f"{count} of {count}: a gallop as a curve, edited")
+        with progress_bar() as progress, writing(out):
+            curve = run_signals(out, progress)
     with writing(out):
-        write_page(out, reports)
-    write_report(out / "report.json", make_report("demo", {}, {"only": only}, {"transfers": reports}, began))
-    _show(reports)
+        write_page(out, reports, curve)
+    found = {"transfers": reports} | ({} if curve is None else {"signals": curve})
+    write_report(out / "report.json", make_report("demo", {}, {"only": only}, found, began))
+    _show(reports, curve)
     note(f"{time.perf_counter() - began:.0f} s; open {out / 'report.html'}")
 
 
@@ -82,9 +93,12 @@ def _draw(case: Case, result: TransferResult, folder: Path, progress: Progress) 
         tempose.render.render(fewer, folder / f"{case.name}.mp4", progress=progress, size=_FILM)
 
 
-def _show(reports: list[dict[str, Any]]) -> None:
+def _show(reports: list[dict[str, Any]], curve: dict[str, Any] | None) -> None:
     rows = [[_text(value) for value in table_row(report["title"], report)] for report in reports]
-    show_table(rows, HEADER, numbers=True)
+    if rows:
+        show_table(rows, HEADER, numbers=True)
+    if curve is not None:
+        show_table([[_text(value) for value in signals_row(curve)]], SIGNALS_HEADER, numbers=True)
 
 
 def _text(value: Any) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tempose
+from tempose.cli.demo_signals import signals_section
 
 if TYPE_CHECKING:
     from tempose.render import Section, Table
@@ -77,7 +78,9 @@ def table_row(name: str, report: dict[str, Any]) -> list[Any]:
     ]
 
 
-def write_page(folder: Path, reports: Sequence[dict[str, Any]]) -> None:
+def write_page(
+    folder: Path, reports: Sequence[dict[str, Any]], signals: dict[str, Any] | None = None
+) -> None:
     """Write ``report.html``, which opens without a network.
 
     Parameters
@@ -86,15 +89,19 @@ def write_page(folder: Path, reports: Sequence[dict[str, Any]]) -> None:
         Where the pictures of the demo lie.
     reports : sequence of dict
         Of the transfers, in the order in which they are shown.
+    signals : dict, optional
+        Of the clip that became a curve.
     """
     render = tempose.render
-    sections = [render.Section("Overview", [_INTRO, _table(reports)])]
+    sections = [render.Section("Overview", [_INTRO, _table(reports)])] if reports else []
     sections += [_section(folder, report) for report in reports]
+    if signals is not None:
+        sections.append(signals_section(folder, signals))
     render.html_report(
         "Tempose demo",
         sections,
         folder / "report.html",
-        subtitle=f"motion onto still meshes, Tempose {tempose.__version__}",
+        subtitle=f"motion onto still meshes, clips as curves; Tempose {tempose.__version__}",
     )
 
 

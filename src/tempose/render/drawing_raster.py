@@ -79,7 +79,7 @@ def _cover(covered, ink, points, colors, radius):
                 t = 0.0 if length2 == 0.0 else min(max((px * dx + py * dy) / length2, 0.0), 1.0)
                 distance = np.sqrt((px - t * dx) ** 2 + (py - t * dy) ** 2)
                 alpha = min(max(radius + 0.5 - distance, 0.0), 1.0) * min(2 * radius, 1.0)
-                if alpha > covered[j, i]:
+                if alpha > 0.0 and alpha >= covered[j, i]:  # the later part of a line is on top
                     covered[j, i] = alpha
                     for c in range(3):
                         ink[j, i, c] = (1 - t) * colors[k, c] + t * colors[min(k + 1, len(colors) - 1), c]
