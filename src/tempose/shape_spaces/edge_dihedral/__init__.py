@@ -1,5 +1,5 @@
 """Edge lengths and dihedral angles as a shape space: measured, put together, refined."""
 
-from tempose.shape_spaces.edge_dihedral.space import EdgeDihedralSpace
+from tempose.shape_spaces.edge_dihedral.space import Decoded, EdgeDihedralSpace
 
-__all__ = ["EdgeDihedralSpace"]
+__all__ = ["Decoded", "EdgeDihedralSpace"]

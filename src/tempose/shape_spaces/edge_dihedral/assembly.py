@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tempose.shape_spaces.edge_dihedral.hinges import Hinges
+from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
 from tempose.shape_spaces.edge_dihedral.positions import VertexPositions
+from tempose.shape_spaces.edge_dihedral.reference import Reference, hinge_stiffness
 from tempose.shape_spaces.edge_dihedral.triangles import lay_out
 from tempose.shape_spaces.edge_dihedral.turns import FaceTurns
 from tempose.typing import FloatArray, IntArray
@@ -41,7 +43,12 @@ class Assembly:
     """
 
     def __init__(
-        self, F: IntArray, hinges: Hinges, n: int, lengths: FloatArray, stiffness: FloatArray
+        self,
+        F: IntArray,
+        hinges: Hinges,
+        n: int,
+        lengths: FloatArray,
+        stiffness: FloatArray,
     ) -> None:
         self.hinges = hinges
         self.turns = FaceTurns(hinges, stiffness)
@@ -67,3 +74,26 @@ class Assembly:
         directions, apex = lay_out(sides)
         R, mismatch, n_iter = self.turns.rotations(directions, dihedrals)
         return Assembled(self.positions.solve(sides, apex, R), mismatch, n_iter)
+
+
+def make_assembly(reference: Reference, hinges: Hinges) -> Assembly:
+    """Prepare to put meshes together that resemble a reference.
+
+    Parameters
+    ----------
+    reference : Reference
+        Mesh and what was measured of its clip.
+    hinges : Hinges
+        Of its faces.
+
+    Returns
+    -------
+    Assembly
+        Factorised.
+    """
+    lengths, dihedrals = lengths_and_dihedrals(reference.vertices, reference.faces, hinges)
+    stiffness = hinge_stiffness(hinges, reference)
+    n = len(reference.vertices)
+    assembly = Assembly(reference.faces, hinges, n, reference.lengths, stiffness)
+    assembly.turns.start_from(lay_out(lengths[hinges.face_edges])[0], dihedrals)
+    return assembly

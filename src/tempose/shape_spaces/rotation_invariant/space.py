@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from tempose.shape_spaces.edge_dihedral.assembly import Assembly
+from tempose.shape_spaces.edge_dihedral.assembly import make_assembly
 from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_meshes, over_rows
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
@@ -15,7 +15,6 @@ from tempose.shape_spaces.edge_dihedral.placement import Placement
 from tempose.shape_spaces.edge_dihedral.reference import (
     Reference,
     edge_areas,
-    hinge_stiffness,
     make_reference,
     sample_poses,
 )
@@ -52,9 +51,7 @@ class RotationInvariantSpace:
         self.length_weights = np.sqrt(areas / areas.sum()) / l0
         self.height_weights = _HEIGHT * np.repeat(self.length_weights, 2)
         self.placement = Placement(reference.vertices, reference.faces, reference.steadiness)
-        self.assembly = Assembly(
-            reference.faces, hinges, self.n_vertices, l0, hinge_stiffness(hinges, reference)
-        )
+        self.assembly = make_assembly(reference, hinges)
         self.search = SignSearch(reference.faces, self.n_vertices, hinges.edges[hinges.edge])
         self.n_edges, self.n_shape = len(l0), 3 * len(l0)
 
