@@ -62,9 +62,7 @@ def flag() -> MeshClip:
     uv, F = grid(77, 39)
     rng = np.random.default_rng(4)
     u, v = uv.T
-    V = np.zeros((100, len(uv), 3))
-    for i, t in enumerate(np.arange(100) / 25):
-        V[i] = np.column_stack([1.5 * u, v, np.zeros_like(u)])
+    V = np.repeat(np.column_stack([1.5 * u, v, np.zeros_like(u)])[None], 100, axis=0)
     for _ in range(40):
         wave, speed, tilt, phase = (
             rng.uniform(1, 9),
@@ -81,7 +79,7 @@ def flag() -> MeshClip:
 
 
 def nodding() -> MeshClip:
-    """A tube of 3835 vertices that nods and turns over and over, 99 frames: motion that repeats a good deal."""
+    """A tube of 3835 vertices that nods and turns over and over while waves run up it, 99 frames."""
     uv, F = grid(65, 59)
     u, v = uv.T
     rest = np.column_stack([0.3 * np.cos(2 * np.pi * u), v, 0.3 * np.sin(2 * np.pi * u)])
@@ -89,7 +87,9 @@ def nodding() -> MeshClip:
     for i, t in enumerate(np.arange(99) / 24):
         bend = 0.9 * np.sin(3.1 * t) * v**2
         sway = 0.5 * np.sin(2.3 * t + 0.6 * np.sin(t)) * v
-        radius = 1 + 0.15 * np.sin(3.1 * t) * np.sin(np.pi * v) + 0.04 * np.sin(7 * t + 6 * v)
+        radius = 1 + 0.15 * np.sin(3.1 * t) * np.sin(np.pi * v)
+        for w in range(1, 9):
+            radius = radius + 0.12 / w**1.5 * np.sin((2 + 1.7 * w**0.7) * t - 5 * w * v + 2 * np.pi * w * u)
         x, z = rest[:, 0] * radius, rest[:, 2] * radius
         x, z = x * np.cos(sway) - z * np.sin(sway), x * np.sin(sway) + z * np.cos(sway)
         V[i] = np.column_stack([x + np.sin(bend) * v, v * np.cos(bend), z + 0.2 * np.sin(2.3 * t) * v**3])

@@ -18,8 +18,9 @@ from tempose.signals.options import FitOptions, check_pins
 from tempose.signals.placement import placement_spline
 from tempose.signals.plane import Goal, Plane, fit_plane, fit_time, turned
 from tempose.signals.pose.transitions import find_bad_transitions
+from tempose.signals.room import check_room
 from tempose.signals.shape.fit import FittedShape, Percent, checked_frames, fit_examples, fit_shape, rescaled
-from tempose.signals.shape.streamed import fit_streamed_shape
+from tempose.signals.shape.streamed import fit_streamed_shape, streamed_space
 from tempose.signals.signals import Signals
 from tempose.signals.still import still_signals
 from tempose.signals.time.path import time_path
@@ -28,10 +29,15 @@ from tempose.signals.time.signal import TimeSignal
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 MEASURED_VERTICES = 1000
+"""Vertices whose motion says whether a clip repeats, where coordinates are no vertices."""
+
 LEAST_SHARE = 0.05
 """Without a tolerance given, at most so much of a clip's own motion is left out."""
 
 _SAFETY = 1.05
+
+_WIDEST = 18
+"""Numbers that a shape space has for a vertex at most: 9 for a face, of which there are two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,10 +130,15 @@ def _fit_shape(
     clip, limit = frames.clip, options.percent
     if options.tolerance is None:
         limit = min(limit, LEAST_SHARE * frames.motion())
-    if frames.streamed(options.m) and options.space == "vertex" and Q is None:
+    if frames.streamed(options.m, options.space) and Q is None:
         with notes.stage("shape"):
-            space = VertexSpace(len(clip.rest))
+            space = streamed_space(options.space, frames)
             return fit_streamed_shape(space, frames, options.m, SHAPE_SHARE * limit, notes.progress), limit
+    check_room(
+        3 * 8e-9 * clip.n_frames * _WIDEST * len(clip.rest),
+        f"{clip.n_frames} frames in the shape space {options.space!r}",
+        "take fewer frames, or the vertex space, which reads them from the file",
+    )
     V = frames.block(slice(None))
     with notes.stage("encode"):
         known = V if Q is None else np.concatenate([V, Q])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,7 +51,7 @@ def write_signal_model(model: SignalModel, path: str | os.PathLike[str]) -> Path
     header = {
         "options": asdict(model.options),
         "report": model.report_,
-        "edits": list(model.edits_),
+        "edits": [_plain(edit) for edit in model.edits_],
         "made_from": model.source_.path,
         "tree": tree,
     }
@@ -90,3 +91,14 @@ def read_signal_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{path}: a model of signals whose parts do not fit together: {error}") from None
     return options, state
+
+
+def _plain(value: Any) -> Any:
+    """Return an operation as JSON would give it back: scripts write arrays and paths into theirs."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(v) for key, v in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return str(value) if isinstance(value, Path) else value

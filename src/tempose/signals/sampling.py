@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.signals.placement import placed
+from tempose.signals.room import check_room
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
 
@@ -111,7 +111,11 @@ def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np
             raise ValueError(f"times must be finite, got {times}")
         return evaluate(signals, times, dtype)
     if out is None:
-        _check_room(shape, dtype)
+        check_room(
+            math.prod(shape) * np.dtype(dtype).itemsize / 1e9,
+            f"{math.prod(times.shape)} frames of {shape[-2]} vertices",
+            "take them in blocks (sample_blocks), or give a memory map as out",
+        )
     flat = as_floats(times.reshape(-1), "times", ("K",))
     if out is None:
         rows = np.zeros((len(flat), *shape[-2:]), dtype)
@@ -122,16 +126,3 @@ def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np
     for where in _blocks(signals, len(flat)):
         evaluate(signals, flat[where], out=rows[where])
     return rows.reshape(shape) if out is None else out
-
-
-def _check_room(shape: tuple[int, ...], dtype: Any) -> None:
-    wanted = math.prod(shape) * np.dtype(dtype).itemsize
-    try:
-        free = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, OSError, ValueError):
-        return
-    if wanted > free:
-        raise ValueError(
-            f"{math.prod(shape[:-2])} frames of {shape[-2]} vertices take {wanted / 1e9:.0f} GB, more "
-            "than this machine has; take them in blocks (sample_blocks), or give a memory map as out"
-        )
