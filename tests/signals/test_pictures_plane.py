@@ -24,6 +24,7 @@ from tempose.signals.pictures import (
     pose_grid,
     thumbnails,
 )
+from tempose.signals.pictures.clipping import clipped
 from tempose.signals.pictures.crowding import Crowd
 from tempose.signals.pictures.pose_grid import poses_at
 from tempose.signals.pictures.region import check_region, curve_points, used_region
@@ -219,3 +220,12 @@ def test_all_pictures_of_a_model(model: SignalModel, tmp_path: Path) -> None:
         plot_signals(model, tmp_path, formats=("pdf",))
     with pytest.raises(FileNotFoundError):
         plot_signals(model, tmp_path / "no" / "folder", grid=False)
+
+
+def test_lines_are_cut_at_the_edge() -> None:
+    box = (0.0, 0.0, 10.0, 10.0)
+    line = np.array([[-5, 5], [5, 5], [5, 20], [20, 20], [20, -20], [5, -5], [5, 5.0]])
+    parts = clipped(line, box)
+    assert_allclose(parts, [[[0, 5], [5, 5]], [[5, 5], [5, 10]], [[5, 0], [5, 5]]])
+    (through,) = clipped(np.array([[-10, -10], [20, 20.0]]), box)
+    assert_allclose(through, [[0, 0], [10, 10]])

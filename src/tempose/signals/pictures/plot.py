@@ -92,7 +92,7 @@ def _drawers(
         found["pose-grid"] = lambda: draw_pose_grid(signals, theme=theme, progress=progress)
     tolerance: Any = report.get("options", {}).get("tolerance")
     if report.get("frame_errors") and not model.edits_:
-        errors = _named_errors(report["frame_errors"])
+        errors = named_errors(report["frame_errors"])
         found["frame-errors"] = lambda: draw_errors(errors, tolerance, theme)
     if report.get("scree"):
         found["scree"] = lambda: draw_scree(np.asarray(report["scree"]), report["m"], tolerance, theme)
@@ -101,7 +101,19 @@ def _drawers(
     return found
 
 
-def _named_errors(rows: dict[str, list[float]]) -> Mapping[str, FloatArray]:
+def named_errors(rows: Mapping[str, list[float]]) -> Mapping[str, FloatArray]:
+    """Name the rows of ``frame_errors`` as charts do.
+
+    Parameters
+    ----------
+    rows : mapping of str to list of T floats
+        Of a report.
+
+    Returns
+    -------
+    mapping of str to (T,) ndarray
+        What is played last; the shape signal alone is left out where it is what is played.
+    """
     errors = {name: np.asarray(row, dtype=np.float64) for name, row in rows.items()}
     if np.allclose(errors.get("h", 0.0), errors["played"], rtol=1e-3, atol=1e-9):
         del errors["h"]  # one line would hide the other

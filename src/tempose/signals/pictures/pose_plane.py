@@ -12,6 +12,7 @@ from tempose.render.chart_scale import nice_ticks
 from tempose.render.drawing import Drawing, Inset, Stroke, Words
 from tempose.render.graph import Graph, text_width
 from tempose.render.themes import theme_named
+from tempose.signals.pictures.clipping import clipped
 from tempose.signals.pictures.crowding import Crowd
 from tempose.signals.pictures.region import WARNING, curve_points, plane_graph, used_region
 from tempose.signals.pictures.thumbnails import make_studio
@@ -58,7 +59,10 @@ def draw_pose_plane(
     frames = graph.place(*signals.time(signals.ticks(signals.times)).T)
     left, top, right, bottom = graph.box
     controls = _polygon(graph, signals)
-    crowd = Crowd(np.concatenate([line, controls, controls]), (left + 4, top + 4, right - 4, bottom - 4))
+    sites = graph.place(*signals.pose.sites.T)
+    crowd = Crowd(
+        np.concatenate([line, controls, controls, sites, sites]), (left + 4, top + 4, right - 4, bottom - 4)
+    )
     if thumbnails:
         _thumbnails(graph, signals, frames, crowd, thumbnails)
     _before_edits(graph, signals, seconds, curve)
@@ -135,7 +139,8 @@ def _thumbnails(graph: Graph, signals: Signals, frames: FloatArray, crowd: Crowd
 
 def _polygon(graph: Graph, signals: Signals) -> FloatArray:
     controls = graph.place(*signals.time.curve.controls.T)
-    graph.drawing.add(Stroke(controls, graph.tone.strong_line, 1.0))
+    for part in clipped(controls, graph.box):
+        graph.drawing.add(Stroke(part, graph.tone.strong_line, 1.0))
     return controls
 
 
@@ -157,9 +162,11 @@ def _frames(graph: Graph, signals: Signals, frames: FloatArray) -> None:
     nearest = np.linalg.norm(sites[:, None] - frames[None], axis=2)
     for site, gaps in zip(sites, nearest):
         i = int(gaps.argmin())
-        color = colors[i] if gaps[i] < 2 * radius else tone.text_2
-        drawing.disc(site, 1.9 * radius, color)
-        drawing.disc(site, 1.9 * radius - 1.2, tone.view)
+        if gaps[i] < 2 * radius:
+            drawing.disc(site, 1.9 * radius, colors[i])
+            drawing.disc(site, 1.9 * radius - 1.2, tone.view)
+        else:
+            drawing.add(Stroke(_circle(site, 1.9 * radius - 0.6), tone.text_2, 1.2))
     for at, color in zip(frames, colors):
         drawing.disc(at, 1.28 * radius, tone.view)
         drawing.disc(at, radius, color)
