@@ -21,6 +21,10 @@ MANY_FRAMES = 600
 """Frames from which on few components are found by a random sketch, not by the pairs of all frames."""
 
 
+FOLLOWING = ("vertex", "gradient", "patch")
+"""Spaces whose coordinates can be found block by block: rotations go on from the block before."""
+
+
 @dataclass(frozen=True, eq=False)
 class ClipFrames:
     """A clip, and where its body is in every frame if that is split off."""
@@ -64,13 +68,15 @@ class ClipFrames:
         """Whether the clip is too large to be held as numbers of double precision."""
         return self.clip.vertices.size > IN_MEMORY
 
-    def streamed(self, m: int | None) -> bool:
+    def streamed(self, m: int | None, space: str = "vertex") -> bool:
         """Whether principal components are to be found in passes over the clip.
 
         Parameters
         ----------
         m : int or None
             Number asked for; None where a tolerance decides.
+        space : str, default "vertex"
+            Shape space; coordinates of others than vertices are about six times as many.
 
         Returns
         -------
@@ -79,7 +85,8 @@ class ClipFrames:
             matrix of all pairs of frames costs the cube of their number.
         """
         many = self.clip.n_frames > MANY_FRAMES and (m is None or m < self.clip.n_frames // 2)
-        return self.long or many
+        wide = space != "vertex" and self.clip.vertices.size > IN_MEMORY // 3
+        return self.long or wide or (many and space in FOLLOWING)
 
     def motion(self) -> float:
         """Return how much the clip moves.
@@ -113,15 +120,20 @@ class ClipFrames:
         V = np.array(self.clip.vertices[frames], dtype=np.float64)
         return V if self.placements is None else in_body(V, self.placements[frames], V)
 
-    def blocks(self) -> Iterator[FloatArray]:
+    def blocks(self, values: int | None = None) -> Iterator[FloatArray]:
         """Yield the frames in blocks, in order, flattened.
+
+        Parameters
+        ----------
+        values : int, optional
+            Numbers that the caller makes of one frame, where they are more than its coordinates.
 
         Yields
         ------
         (k, 3 n) ndarray of float64
             Vertices of some frames.
         """
-        for frames in block_slices(self.clip.n_frames, 3 * len(self.clip.rest)):
+        for frames in block_slices(self.clip.n_frames, max(values or 0, 3 * len(self.clip.rest))):
             V = read_block(self.clip.vertices, frames)
             V = V if self.placements is None else in_body(V, self.placements[frames])
             yield V.reshape(len(V), -1)
