@@ -131,7 +131,8 @@ def _check_reach(X: FloatArray, pins: Mapping[int, FloatArray]) -> None:
 def _note_layout(notes: Notes, name: str, stress: float, warnings: tuple[str, ...]) -> None:
     notes.facts["layout"] = {"name": name, "stress": stress}
     notes.warnings.extend(warnings)
-    if stress > POOR_STRESS:
+    # other layouts follow distances along the motion and mean to miss those between poses
+    if stress > POOR_STRESS and name in ("mds", "key frames"):
         notes.warnings.append(
             f"doubtful layout: distances in the pose plane miss those between poses by {100 * stress:.0f} %"
         )
