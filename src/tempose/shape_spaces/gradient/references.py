@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.rotations import from_matrix, polar_rotation, to_rotation_vector
-from tempose.shape_spaces.gradient.branches import follow_path
+from tempose.rotations import polar_rotation
+from tempose.shape_spaces.gradient.branches import follow_branch
 from tempose.shape_spaces.gradient.faces import FaceGradients, padded
-from tempose.typing import FloatArray, IntArray
+from tempose.typing import BoolArray, FloatArray
 
 FAR = np.radians(150.0)
 """A face that gets further than this from its mean rotation may turn on and on."""
@@ -21,7 +21,7 @@ def reference_frames(gradients: FaceGradients, frames: FloatArray) -> FloatArray
     gradients : FaceGradients
         The mesh at rest.
     frames : (T, n, 3) float
-        Clip or poses, metres.
+        Clip or poses, metres; read frame by frame, some times over.
 
     Returns
     -------
@@ -29,40 +29,20 @@ def reference_frames(gradients: FaceGradients, frames: FloatArray) -> FloatArray
         Turned frames of the faces: the mean over the clip; for faces that leave it by nearly half a turn
         the frame half way of their path, where that keeps their angles smaller.
     """
-    total, turned = gradients.frames(), gradients.frames()
-    base = gradients.frames()
-    total[:] = 0.0
+    base, turned = gradients.frames(), gradients.frames()
+    total = np.zeros(base.shape)
     for V in frames:
         gradients.turned(V, base, turned)
         total += turned
     mean = padded(as_rows(polar_rotation(as_axes(total))))
     far = _far_faces(gradients, frames, mean)
-    if len(far) == 0:
+    if not far.any():
         return mean
-    axes = np.stack([_turned_axes(gradients, V, mean)[far] for V in frames])
-    found = np.array(as_axes(mean))
-    found[far] = middle_rotations(axes, gradients.shape.shares[far])
-    return padded(as_rows(found))
-
-
-def middle_rotations(axes: FloatArray, weights: FloatArray) -> FloatArray:
-    """Choose rotations from which those of paths differ least.
-
-    Parameters
-    ----------
-    axes : (T, k, 3, 3) float
-        k rotations in the order of time.
-    weights : (k,) float
-        How much each counts for where the middle of the way is.
-
-    Returns
-    -------
-    (k, 3, 3) ndarray
-        The mean of each, or its rotation half way where its unwrapped angles then stay smaller.
-    """
-    mean, middle = polar_rotation(axes.sum(axis=0)), axes[_half_way(axes, weights)]
-    better = _largest_angles(axes, middle) < _largest_angles(axes, mean)
-    return np.where(better[:, None, None], middle, mean)
+    middle = _middle_frame(gradients, frames, far)
+    gradients.turned(frames[middle], mean, turned)
+    angles = [_largest_angles(gradients, frames, middle, reference) for reference in (turned, mean)]
+    better = far & (angles[0] < angles[1])
+    return padded(np.where(better, turned[:-3].reshape(9, -1), mean[:-3].reshape(9, -1)))
 
 
 def as_axes(frames: FloatArray) -> FloatArray:
@@ -97,32 +77,59 @@ def as_rows(axes: FloatArray) -> FloatArray:
     return np.ascontiguousarray(axes.transpose(2, 1, 0)).reshape(9, -1)
 
 
-def _turned_axes(gradients: FaceGradients, V: FloatArray, near: FloatArray) -> FloatArray:
-    turned = gradients.frames()
-    gradients.turned(V, near, turned)
-    return as_axes(turned)
+def half_way(steps: FloatArray) -> int:
+    """Find the frame before which half of a way is made.
 
+    Parameters
+    ----------
+    steps : (T - 1,) float
+        Way from frame to frame, not negative.
 
-def _far_faces(gradients: FaceGradients, frames: FloatArray, mean: FloatArray) -> IntArray:
-    least = np.full(gradients.n_faces, 3.0)
-    turned = gradients.frames()
-    for V in frames:
-        gradients.turned(V, mean, turned)
-        trace = (turned * mean)[:-3].reshape(9, -1).sum(axis=0)
-        least = np.minimum(least, trace)
-    return np.flatnonzero(least < 1 + 2 * np.cos(FAR))
-
-
-def _half_way(axes: FloatArray, weights: FloatArray) -> int:
-    """Frame at which the faces have made half their way."""
-    cosine = (np.einsum("tfij,tfij->tf", axes[1:], axes[:-1]) - 1) / 2
-    steps = np.arccos(np.clip(cosine, -1, 1)) @ weights
+    Returns
+    -------
+    int
+        Frame.
+    """
     way = np.concatenate([[0.0], np.cumsum(steps)])
     return int(np.abs(way - way[-1] / 2).argmin())
 
 
-def _largest_angles(axes: FloatArray, reference: FloatArray) -> FloatArray:
-    w = to_rotation_vector(from_matrix(np.einsum("fji,tfjk->tfik", reference, axes)))
-    w = np.ascontiguousarray(w.transpose(0, 2, 1))
-    follow_path(w, np.ones(w.shape[2]))
-    return np.sqrt((w**2).sum(axis=1)).max(axis=0)
+def _far_faces(gradients: FaceGradients, frames: FloatArray, mean: FloatArray) -> BoolArray:
+    least, turned = np.full(gradients.n_faces, 3.0), gradients.frames()
+    for V in frames:
+        gradients.turned(V, mean, turned)
+        least = np.minimum(least, _traces(turned, mean))
+    return least < 1 + 2 * np.cos(FAR)
+
+
+def _middle_frame(gradients: FaceGradients, frames: FloatArray, far: BoolArray) -> int:
+    weights = gradients.shape.shares * far
+    turned, before = gradients.frames(), gradients.frames()
+    steps = np.zeros(len(frames))
+    for t, V in enumerate(frames):
+        gradients.turned(V, before, turned)
+        steps[t] = np.arccos(np.clip((_traces(turned, before) - 1) / 2, -1.0, 1.0)) @ weights
+        turned, before = before, turned
+    return half_way(steps[1:])
+
+
+def _traces(a: FloatArray, b: FloatArray) -> FloatArray:
+    return (a * b)[:-3].reshape(9, -1).sum(axis=0)
+
+
+def _largest_angles(
+    gradients: FaceGradients, frames: FloatArray, start: int, reference: FloatArray
+) -> FloatArray:
+    """Largest angle of every face from a reference, going on from a frame in both directions."""
+    m, weigh = gradients.n_faces, gradients.weigh
+    z, before = (np.zeros(9 * m + 3 * gradients.n_pieces) for _ in range(2))
+    largest = np.zeros(m)
+    for order in (range(start, len(frames)), range(start, -1, -1)):
+        for t in order:
+            gradients.encode(frames[t], reference, z)
+            w = z[: 3 * m].reshape(3, m)
+            if t != start:
+                follow_branch(before[: 3 * m].reshape(3, m), weigh, w)
+            largest = np.maximum(largest, np.sqrt((w * w).sum(axis=0)) * weigh[:m])
+            z, before = before, z
+    return largest

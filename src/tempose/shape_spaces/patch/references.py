@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.rotations import polar_rotation
+from tempose.rotations import from_matrix, polar_rotation, to_rotation_vector
+from tempose.shape_spaces.gradient.branches import follow_path
 from tempose.shape_spaces.gradient.faces import FaceGradients, padded
-from tempose.shape_spaces.gradient.references import as_axes, as_rows, middle_rotations
+from tempose.shape_spaces.gradient.references import as_axes, as_rows, half_way
 from tempose.typing import FloatArray
 
 
@@ -35,5 +36,17 @@ def body_frames(gradients: FaceGradients, frames: FloatArray) -> FloatArray:
         axes = as_axes(turned)
         bodies[t] = polar_rotation(np.einsum("m,mij,mkj->ik", shares, axes, first))
         total += bodies[t].T @ axes
-    middle = middle_rotations(bodies[:, None], np.ones(1))[0]
-    return padded(as_rows(middle @ polar_rotation(total)))
+    return padded(as_rows(_middle(bodies) @ polar_rotation(total)))
+
+
+def _middle(turns: FloatArray) -> FloatArray:
+    """Rotation from which those of a path differ least: their mean, or the one half way of a long path."""
+    cosines = (np.einsum("tij,tij->t", turns[1:], turns[:-1]) - 1) / 2
+    way = half_way(np.arccos(np.clip(cosines, -1, 1)))
+    choices = [polar_rotation(turns.sum(axis=0)), turns[way]]
+    largest: list[float] = []
+    for choice in choices:
+        w = to_rotation_vector(from_matrix(choice.T @ turns))[:, :, None]
+        follow_path(w, np.ones(1))
+        largest.append(float(np.linalg.norm(w, axis=1).max()))
+    return choices[int(np.argmin(largest))]
