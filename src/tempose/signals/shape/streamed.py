@@ -12,10 +12,12 @@ from tempose.shape_spaces import ShapeSpace, VertexSpace, shape_space
 from tempose.signals.frames import FOLLOWING, ClipFrames
 from tempose.signals.shape.fit import FittedShape, checked_frames
 from tempose.signals.shape.signal import ShapeSignal
-from tempose.typing import FloatArray, Progress, silent
+from tempose.typing import FloatArray, IntArray, Progress, silent
 
 SEEN = 200
 """Frames shown to a space that suits itself to a clip."""
+
+_BACK = 16
 
 WIDTH = 64
 """Components of the first sketch where only decoded frames tell how many are needed."""
@@ -49,8 +51,12 @@ def streamed_space(name: str, frames: ClipFrames) -> ShapeSpace:
         )
     if name == VertexSpace.name:
         return VertexSpace(len(clip.rest))
-    seen = np.unique(np.linspace(0, clip.n_frames - 1, min(SEEN, clip.n_frames)).round().astype(np.int64))
-    return shape_space(name, clip.rest, clip.faces, frames.block(seen))
+    return shape_space(name, clip.rest, clip.faces, frames.block(_seen(frames)))
+
+
+def _seen(frames: ClipFrames) -> IntArray:
+    T = frames.clip.n_frames
+    return np.unique(np.linspace(0, T - 1, min(SEEN, T)).round().astype(np.int64))
 
 
 def fit_streamed_shape(
@@ -84,8 +90,10 @@ def fit_streamed_shape(
     return _fitted(space, found, len(found.components), unit)
 
 
-def encoded_blocks(space: ShapeSpace, frames: ClipFrames) -> Iterator[FloatArray]:
-    """Encode a clip block by block, as if all at once.
+def first_coordinates(space: ShapeSpace, frames: ClipFrames) -> FloatArray:
+    """Encode the first frame so that the clip goes on from it through the frame nearest to the reference.
+
+    There rotations are least and no turn is in doubt; from there the clip is followed back to its start.
 
     Parameters
     ----------
@@ -94,13 +102,41 @@ def encoded_blocks(space: ShapeSpace, frames: ClipFrames) -> Iterator[FloatArray
     frames : ClipFrames
         The clip.
 
+    Returns
+    -------
+    (d,) ndarray
+        Coordinates.
+    """
+    following: Any = space
+    seen = _seen(frames)
+    sizes = [float(np.linalg.norm(space.encode(frames.block(seen[i : i + 1])))) for i in range(len(seen))]
+    nearest = int(seen[int(np.argmin(sizes))])
+    z = space.encode(frames.block(slice(nearest, nearest + 1)))[0]
+    for stop in range(nearest, 0, -_BACK):
+        back = frames.block(slice(max(stop - _BACK, 0), stop))[::-1]
+        z = following.encode_path(back, z)[-1].copy()
+    return z
+
+
+def encoded_blocks(space: ShapeSpace, frames: ClipFrames, first: FloatArray) -> Iterator[FloatArray]:
+    """Encode a clip block by block, as if all at once.
+
+    Parameters
+    ----------
+    space : ShapeSpace
+        As `streamed_space` makes it.
+    frames : ClipFrames
+        The clip.
+    first : (d,) float
+        Coordinates of the first frame, from which the others go on.
+
     Yields
     ------
     (k, d) ndarray
         Coordinates of some frames.
     """
     following: Any = space
-    last: FloatArray | None = None
+    last = first
     for block in frames.blocks(space.dimension // 3):
         z = following.encode_path(block.reshape(len(block), -1, 3), last)
         last = z[-1].copy()
@@ -112,7 +148,10 @@ def _fit_decoded(
 ) -> FittedShape:
     """Take the components with which some decoded frames meet the limit; wider sketches until they do."""
     which, width = checked_frames(frames.clip.n_frames), m or WIDTH
-    V = frames.block(which)
+    V, first = frames.block(which), first_coordinates(space, frames)
+
+    def blocks() -> Iterator[FloatArray]:
+        return encoded_blocks(space, frames, first)
 
     def percent(found: StreamedPca, count: int) -> float:
         z = found.mean + found.coordinates[which, :count] @ found.components[:count]
@@ -120,7 +159,7 @@ def _fit_decoded(
         return 100.0 / frames.diagonal * float(np.sqrt(off))
 
     while True:
-        found = streamed_pca(lambda: encoded_blocks(space, frames), space.dimension, width, progress=progress)
+        found = streamed_pca(blocks, space.dimension, width, progress=progress)
         count = len(found.components)
         if m is not None or count < width or percent(found, count) <= limit:
             break
