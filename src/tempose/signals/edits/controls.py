@@ -108,6 +108,4 @@ def _with_control(signals: Signals, i: int, at: FloatArray) -> Signals:
     controls = curve.controls.copy()
     controls[i] = at
     step = signals.pose_step if signals.fade_step is None else signals.fade_step
-    return replace(
-        signals, time=replace(signals.time, curve=Spline(curve.knots, controls)), fade_step=step
-    )
+    return replace(signals, time=replace(signals.time, curve=Spline(curve.knots, controls)), fade_step=step)

@@ -39,8 +39,8 @@ def pin_frames(signals: Signals, pins: Mapping[float, Sequence[float] | FloatArr
     Returns
     -------
     Signals
-        Whose curve runs through the places at those frames; sites and controls are as many as before. With a
-        path every frame shows what it did.
+        Whose curve runs through the places at those frames; sites and controls are as many as before, and
+        places near where they were. With a path every frame shows what it did.
 
     Raises
     ------
@@ -54,15 +54,9 @@ def pin_frames(signals: Signals, pins: Mapping[float, Sequence[float] | FloatArr
         ticks[int(np.abs(ticks - tick).argmin())] = tick
     ticks = np.unique(ticks)
     places = {int(np.searchsorted(ticks, t)): as_floats(p, "at", (2,)) for t, p in at.items()}
-    X, turned = _poses_at(signals, ticks)
+    _, turned = _poses_at(signals, ticks)
     near = PoseLayout(pose_distances(turned)).solve(places, signals.time(ticks)).positions
-    result = _laid_out(signals, ticks, near, X, turned, places)
-    if _bad(result, X, ticks) <= _bad(signals, X, ticks):
-        return result
-    # the layout near the old one spoils transitions: look as far as a fit does
-    choice = choose_layout(turned, places)
-    other = _laid_out(signals, ticks, choice.positions, X, turned, places)
-    return min((result, other), key=lambda s: _bad(s, X, ticks))
+    return _laid_out(signals, ticks, near, _pose_signal(signals, near, turned), places)
 
 
 def pin_frame(signals: Signals, frame: float, at: Sequence[float] | FloatArray) -> Signals:
@@ -116,8 +110,8 @@ def repair_transitions(signals: Signals) -> Signals:
     choice = choose_layout(turned)
     places, samples = choice.samples(turned)
     to_old = _Onto(choice.positions, signals.time(ticks))
-    pose = _pose_signal(signals, to_old(places), samples)
-    result = _laid_out(signals, ticks, to_old(choice.positions), X, turned, {}, pose)
+    pose = _pose_signal(signals, to_old(places), samples, extra=len(choice.middles))
+    result = _laid_out(signals, ticks, to_old(choice.positions), pose, {})
     return min((signals, result), key=lambda s: _bad(s, X, ticks))
 
 
@@ -138,23 +132,20 @@ def _laid_out(
     signals: Signals,
     ticks: FloatArray,
     P: FloatArray,
-    X: FloatArray,
-    turned: FloatArray,
+    pose: PoseSignal,
     pins: Mapping[int, FloatArray],
-    pose: PoseSignal | None = None,
 ) -> Signals:
     k = int(np.clip(len(signals.time.curve.controls), 4, len(P) + 2))
     fitted = fit_time_signal(P, k)
     parameters = fitted.pace.values
     curve = _through(fitted.curve, parameters[list(pins)], np.array([*pins.values()]).reshape(-1, 2))
     time = TimeSignal(curve, curve, monotone_map(ticks, parameters))
-    pose = pose or _pose_signal(signals, P, turned)
     path = _played_path(signals, ticks)
     return replace(signals, pose=pose, time=time, path=path, fade_step=None)
 
 
-def _pose_signal(signals: Signals, P: FloatArray, turned: FloatArray) -> PoseSignal:
-    l = min(len(signals.pose.sites), len(P))
+def _pose_signal(signals: Signals, P: FloatArray, turned: FloatArray, extra: int = 0) -> PoseSignal:
+    l = min(len(signals.pose.sites) + extra, len(P))
     order = order_sites(P, turned)
     fitted = order.signal(max(l, order.least))
     back = np.linalg.inv(orthonormal_basis(signals.shape))
