@@ -14,7 +14,7 @@ from tempose.typing import FloatArray, IntArray
 
 
 @numba.njit(cache=True, nogil=True)
-def _add_normals(V: Any, F: Any, N: Any, out: Any) -> None:
+def _add_normals(V: Any, F: Any, N: Any, fronts: Any, out: Any) -> None:
     for f in range(len(F)):
         for k in range(3):
             i, j, m = F[f, k], F[f, (k + 1) % 3], F[f, (k + 2) % 3]
@@ -23,7 +23,7 @@ def _add_normals(V: Any, F: Any, N: Any, out: Any) -> None:
             x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
             angle = math.atan2(math.sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz)
             for c in range(3):
-                out[i, c] += angle * N[f, c]
+                out[i, c] += fronts[f, k] * angle * N[f, c]
 
 
 @numba.njit(cache=True, nogil=True)
@@ -36,7 +36,9 @@ def _heights(V: Any, N: Any, edges: Any, out: Any) -> None:
             out[e, 1] -= N[j, c] * step
 
 
-def angle_weighted_normals(V: FloatArray, F: IntArray, face_normals: FloatArray) -> FloatArray:
+def angle_weighted_normals(
+    V: FloatArray, F: IntArray, face_normals: FloatArray, fronts: FloatArray
+) -> FloatArray:
     """Mean of the normals round each vertex, weighed by the angles of the faces.
 
     Parameters
@@ -47,6 +49,8 @@ def angle_weighted_normals(V: FloatArray, F: IntArray, face_normals: FloatArray)
         Faces.
     face_normals : (m, 3) float
         Unit normals.
+    fronts : (m, 3) float
+        As `corner_fronts` gives them.
 
     Returns
     -------
@@ -54,7 +58,7 @@ def angle_weighted_normals(V: FloatArray, F: IntArray, face_normals: FloatArray)
         Unit normals; where those of the faces cancel, that of one face; zero for a loose vertex.
     """
     N = np.zeros(V.shape)
-    _add_normals(V, F, face_normals, N)
+    _add_normals(V, F, face_normals, fronts, N)
     length = np.linalg.norm(N, axis=1)
     lost = np.flatnonzero(length < 1e-9)
     if len(lost):
@@ -65,7 +69,9 @@ def angle_weighted_normals(V: FloatArray, F: IntArray, face_normals: FloatArray)
     return N / np.where(length > 0, length, 1.0)[:, None]
 
 
-def heights_and_cosines(V: FloatArray, F: IntArray, hinges: Hinges) -> tuple[FloatArray, FloatArray]:
+def heights_and_cosines(
+    V: FloatArray, F: IntArray, hinges: Hinges, fronts: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Measure heights, and on which side of its faces each vertex normal lies.
 
     Parameters
@@ -76,6 +82,8 @@ def heights_and_cosines(V: FloatArray, F: IntArray, hinges: Hinges) -> tuple[Flo
         Faces.
     hinges : Hinges
         Of the faces.
+    fronts : (m, 3) float
+        As `corner_fronts` gives them.
 
     Returns
     -------
@@ -86,7 +94,7 @@ def heights_and_cosines(V: FloatArray, F: IntArray, hinges: Hinges) -> tuple[Flo
     """
     V, F = np.ascontiguousarray(V, dtype=np.float64), np.ascontiguousarray(F)
     face_normals = normals(V, F, hinges)
-    N = angle_weighted_normals(V, F, face_normals)
+    N = angle_weighted_normals(V, F, face_normals, fronts)
     heights = np.zeros((len(hinges.edges), 2))
     _heights(V, N, hinges.edges, heights)
     return heights, np.einsum("fkc,fc->fk", N[F], face_normals)

@@ -124,7 +124,7 @@ def _stands_out(doubt: FloatArray) -> float:
     """Disagreement above which a sign is likely to be wrong; infinite where the numbers are too noisy."""
     if len(doubt) == 0:
         return math.inf
-    most, nearly_all = np.quantile(doubt, [0.75, 0.95])
+    most, nearly_all = np.quantile(doubt, [0.6, 0.95])
     if most < 0.1 * _AGREED:
         return _AGREED
     limit = max(_AGREED, _ABOVE_NOISE * float(nearly_all))

@@ -20,6 +20,7 @@ from tempose.shape_spaces.edge_dihedral.reference import (
 )
 from tempose.shape_spaces.edge_dihedral.triangles import lay_out
 from tempose.shape_spaces.rotation_invariant.angles import dihedrals_from_normals, views_of_normals
+from tempose.shape_spaces.rotation_invariant.fans import corner_fronts
 from tempose.shape_spaces.rotation_invariant.heights import heights_and_cosines
 from tempose.shape_spaces.rotation_invariant.normals import normals_in_faces
 from tempose.shape_spaces.rotation_invariant.signs import SignSearch
@@ -46,6 +47,7 @@ class RotationInvariantSpace:
         self.reference = reference
         self.signs = signs
         self.hinges = hinges = find_hinges(reference.faces)
+        self.fronts = corner_fronts(reference.faces, hinges)
         l0 = reference.lengths
         areas = edge_areas(hinges, l0)
         self.length_weights = np.sqrt(areas / areas.sum()) / l0
@@ -104,7 +106,7 @@ class RotationInvariantSpace:
 
     def _encode(self, V: FloatArray) -> FloatArray:
         lengths, _ = lengths_and_dihedrals(V, self.reference.faces, self.hinges)
-        heights, _ = heights_and_cosines(V, self.reference.faces, self.hinges)
+        heights, _ = heights_and_cosines(V, self.reference.faces, self.hinges, self.fronts)
         shape = [lengths * self.length_weights, heights.ravel() * self.height_weights]
         return np.concatenate([*shape, self.placement.encode(V)])
 
@@ -197,7 +199,8 @@ class RotationInvariantSpace:
         """
         reference = make_reference(rest, faces, frames)
         hinges = find_hinges(reference.faces)
+        fronts = corner_fronts(reference.faces, hinges)
         cosines = np.zeros(reference.faces.shape)
         for V in sample_poses(rest, frames):
-            cosines += heights_and_cosines(V, reference.faces, hinges)[1]
+            cosines += heights_and_cosines(V, reference.faces, hinges, fronts)[1]
         return cls(reference, np.where(cosines < 0, -1.0, 1.0))
