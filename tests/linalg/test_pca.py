@@ -49,6 +49,25 @@ def test_small_values_are_known_to_more_than_half_the_digits() -> None:
     assert s[6] < 1e-5 * s[0]
 
 
+@pytest.mark.parametrize("first", ["coordinates", "components", "left_out"])
+def test_whatever_is_asked_first_is_sharp(first: str) -> None:
+    Z = rows(12, 50, 1.5)
+    pca = GramPCA(Z)
+    getattr(pca, first)(11)
+    X, H = pca.coordinates(11), pca.components(11)
+    assert_allclose((Z - Z.mean(axis=0)) @ H.T, X, atol=1e-14)
+    fresh = getattr(GramPCA(Z), first)(11)
+    assert_allclose(np.abs(fresh), np.abs(getattr(pca, first)(11)), atol=1e-14)
+
+
+@pytest.mark.parametrize("m", [0, 3, 7, 11])
+def test_what_is_left_out_of_each_vector_is_its_distance_to_the_span(m: int) -> None:
+    Z = rows(12, 50, 0.8)
+    pca = GramPCA(Z)
+    left = Z - Z.mean(axis=0) - pca.coordinates(m) @ pca.components(m)
+    assert_allclose(GramPCA(Z).left_out(m), np.square(left).sum(axis=1), rtol=1e-6, atol=1e-26)
+
+
 def test_few_components_leave_out_exactly_the_rest_of_the_spectrum() -> None:
     Z = rows(10, 33)
     found = gram_pca(Z, 4)

@@ -21,6 +21,13 @@ def test_the_tolerance_is_met_by_the_literal_representation(tolerance: float, sp
         assert np.hypot(report["budget"]["h"], report["budget"]["g"]) <= POSE_SHARE * tolerance
 
 
+@pytest.mark.parametrize("space", ["patch", "edge-dihedral", "rotation-invariant"])
+def test_so_it_is_in_the_other_spaces(space: str) -> None:
+    report = SignalModel(space, tolerance=1.0).fit(swinging()).report_
+    assert 0.2 < report["paper"]["rms_percent"] <= 1.05
+    assert report["errors"]["rms_percent"] <= 1.0
+
+
 @pytest.mark.parametrize("tolerance", [3.0, 0.5])
 def test_one_mode_or_site_less_would_not_do(tolerance: float) -> None:
     clip = swinging()

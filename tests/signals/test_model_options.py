@@ -91,6 +91,21 @@ def test_a_failed_fit_leaves_the_model_as_it_was() -> None:
     assert model.report_ is report and np.array_equal(model.sample(), before)
 
 
+def test_a_fit_that_is_cancelled_leaves_the_model_as_it_was() -> None:
+    model = SignalModel().fit(swinging())
+    before, seen = model.sample(), list[str]()
+
+    def cancel(done: int, total: int, stage: str) -> None:
+        seen.append(stage)
+        if stage == "measuring errors":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        model.fit(wandering(), progress=cancel)
+    assert np.array_equal(model.sample(), before)
+    assert [s for s in ("encode", "shape", "layout", "pose", "time") if s not in seen] == []
+
+
 def test_a_model_that_was_not_fitted_says_so() -> None:
     for use in (lambda m: m(0.0), lambda m: m.sample(), lambda m: m.clip(), lambda m: m.pose_at((0, 0))):
         with pytest.raises(ValueError, match="no signals yet"):
