@@ -117,3 +117,8 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="JSON"):
         save_model(path, "signals", ARRAYS, {"x": float("nan")})
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+
+
+def test_whoever_may_read_a_new_file_may_read_a_model(tmp_path: Path) -> None:
+    (tmp_path / "new").touch()
+    assert saved(tmp_path).stat().st_mode == (tmp_path / "new").stat().st_mode

@@ -57,6 +57,10 @@ def save_model(
     stored = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
     with atomic_path(path) as part:
         save_file(stored, part, metadata={_KEY: text})
+        # safetensors lets only the owner read; a model may be read by whom a new file may
+        like = part.with_name("like")
+        like.touch()
+        part.chmod(like.stat().st_mode)
     return Path(path)
 
 
