@@ -34,7 +34,7 @@ class LayoutChoice:
     positions: FloatArray
     """(n, 2) places of the frames."""
     name: str
-    """How it was made, such as ``"mds"`` or ``"mds, smoothed"``; with ``" + middles"`` where there are any."""
+    """How it was made, such as ``"mds"`` or ``"mds, smoothed"``; and ``" + middles"`` if there are any."""
     bad: IntArray
     """(b,) transitions i, from frame i to i + 1, that are still bad."""
     aspect: float

@@ -14,6 +14,9 @@ from tempose.signals.pose._descent import descend
 from tempose.signals.pose.pins import Pins, check_pins
 from tempose.typing import FloatArray, IntArray
 
+_ROUNDING = 1e-7
+"""Steps this short change the stress by less than its rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class LayoutResult:
@@ -121,7 +124,8 @@ class PoseLayout:
         start : (n, 2) float, optional
             Where to start; classical scaling if left out, turned, mirrored and moved to fit the pins.
         tolerance : float, default 1e-6
-            Stop once the root mean square step is below this part of the root mean square distance.
+            Stop once the root mean square step is below this part of the root mean square distance; below
+            1e-7 rounding ends the search.
         iterations : int, default 1000
             Passes at most.
 
@@ -178,7 +182,9 @@ class PoseLayout:
         positions = z.T * self.scale
         positions[frames] = places
         history = np.sqrt(stresses[:accepted] / self._total)
-        return LayoutResult(positions, float(history[-1]), passes, step <= tolerance, step, history, warnings)
+        return LayoutResult(
+            positions, float(history[-1]), passes, step <= max(tolerance, _ROUNDING), step, history, warnings
+        )
 
 
 def stress_of(P: FloatArray, distances: FloatArray) -> float:

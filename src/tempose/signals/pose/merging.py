@@ -10,7 +10,7 @@ from scipy.spatial import KDTree
 from tempose.typing import FloatArray, IntArray
 
 MERGE = 1e-3
-"""Places closer than this part of the median step between frames are one place."""
+"""Places closer than this part of the mean step between frames are one place."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ def merge_places(P: FloatArray, X: FloatArray, weights: FloatArray | None = None
     Returns
     -------
     Places
-        A frame joins the first place that lies within `MERGE` of the median step.
+        A frame joins the first place that lies within `MERGE` of the mean step.
     """
     weights = np.ones(len(P)) if weights is None else weights
     group = _groups(P)
@@ -67,8 +67,7 @@ def merge_places(P: FloatArray, X: FloatArray, weights: FloatArray | None = None
 
 def _groups(P: FloatArray) -> IntArray:
     steps = np.linalg.norm(np.diff(P, axis=0), axis=1)
-    moving = steps[steps > 0]
-    near = MERGE * float(np.median(moving)) if len(moving) else 0.0
+    near = MERGE * float(steps.mean()) if len(steps) else 0.0
     leader = np.arange(len(P))
     pairs = KDTree(P).query_pairs(near, output_type="ndarray")
     # in order of the later frame and then of the earlier, so that the earliest place near it wins

@@ -35,7 +35,7 @@ def check_pins(pins: Pins, distances: FloatArray) -> tuple[IntArray, FloatArray,
     Raises
     ------
     ValueError
-        If a frame does not exist, a place is not finite, frames whose poses differ by more than a median
+        If a frame does not exist, a place is not finite, frames whose poses differ by more than a mean
         step share one place, or all frames are pinned on one line though their poses are not.
     """
     n = len(distances)
@@ -63,10 +63,10 @@ def _shared_places(frames: IntArray, places: FloatArray, distances: FloatArray) 
         return ()
     worst = int(np.argmax(apart))
     i, j = int(frames[a[worst]]), int(frames[b[worst]])
-    step = float(np.median(np.diagonal(distances, 1)))
+    step = float(np.diagonal(distances, 1).mean())
     what = (
         f"frames {i} and {j} are pinned at one place, {places[a[worst]].tolist()}, but their poses differ by "
-        f"{apart[worst]:.3g}, {apart[worst] / max(step, 1e-300):.2g} times the median step between frames"
+        f"{apart[worst]:.3g}, {apart[worst] / max(step, 1e-300):.2g} times the mean step between frames"
     )
     if apart[worst] > step:
         raise ValueError(f"pins: {what}; a place has one pose: pin them apart")

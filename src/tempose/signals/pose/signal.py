@@ -58,7 +58,7 @@ class PoseSignal:
         q, shape = self._unit(p)
         out = np.zeros((len(q), self.weights.shape[1]))
         evaluate(q, self._scaled, self.weights, self.affine, out)
-        return out.reshape(*shape, -1)
+        return out.reshape(*shape, out.shape[1])
 
     def jacobian(self, p: FloatArray, origin: FloatArray | None = None) -> FloatArray:
         """Return the derivatives of g by the place.
@@ -78,7 +78,7 @@ class PoseSignal:
         q, shape = self._unit(p)
         out = np.zeros((len(q), 2, self.weights.shape[1]))
         first_derivatives(q, self._scaled, self.weights, self.affine, out)
-        return np.moveaxis(out, 1, 2).reshape(*shape, -1, 2) / self.radius
+        return np.moveaxis(out, 1, 2).reshape(*shape, out.shape[2], 2) / self.radius
 
     def second_derivatives(self, p: FloatArray, origin: FloatArray | None = None) -> FloatArray:
         """Return the second derivatives of g by the place.
@@ -100,7 +100,7 @@ class PoseSignal:
         out = np.zeros((len(q), 3, self.weights.shape[1]))
         second_derivatives(q, self._scaled, self.weights, out)
         square = out[:, [0, 1, 1, 2]] / self.radius**2
-        return np.moveaxis(square, 1, 2).reshape(*shape, -1, 2, 2)
+        return np.moveaxis(square, 1, 2).reshape(*shape, out.shape[2], 2, 2)
 
     def _unit(self, p: FloatArray) -> tuple[FloatArray, tuple[int, ...]]:
         p = np.asarray(p, dtype=np.float64)

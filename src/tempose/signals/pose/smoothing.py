@@ -66,10 +66,10 @@ def main_columns(X: FloatArray) -> FloatArray:
     Returns
     -------
     (n, m') ndarray
-        The first columns; what is left out is within a tenth of the median step, root mean square.
+        The first columns; what is left out is within a tenth of the mean step, root mean square.
     """
     tail = np.sqrt(np.cumsum(np.square(X).mean(axis=0)[::-1])[::-1])
-    return np.ascontiguousarray(X[:, : max(int((tail > 0.1 * np.median(step_sizes(X))).sum()), 1)])
+    return np.ascontiguousarray(X[:, : max(int((tail > 0.1 * step_sizes(X).mean()).sum()), 1)])
 
 
 class _Smoothing:
@@ -83,7 +83,7 @@ class _Smoothing:
         self.free = np.ones(len(self.start), dtype=np.bool_)
         self.free[self.group[fixed]] = False
         n = len(P)
-        self.ticks = (np.arange(n - 1)[:, None] + np.array(_BETWEEN)).ravel()
+        self.ticks = (np.arange(n - 1, dtype=np.float64)[:, None] + np.array(_BETWEEN)).ravel()
         path = interpolating_spline(np.arange(n, dtype=np.float64), X)
         self.path, self.steps = path(self.ticks), np.repeat(step_sizes(X), len(_BETWEEN))[:, None]
         self.curve = np.zeros((len(self.ticks), n))

@@ -31,8 +31,7 @@ def time_graph_distances(distances: FloatArray, reach: FloatArray | float) -> Fl
     steps = np.diagonal(distances, 1)
     beside = np.minimum(np.r_[steps[0], steps], np.r_[steps, steps[-1]])
     # a still frame beside a moving one reaches as far as the motion does
-    moving = steps[steps > 0]
-    beside = np.maximum(beside, 0.1 * float(np.median(moving)) if len(moving) else 0.0)
+    beside = np.maximum(beside, 0.1 * float(steps.mean()))
     far = np.full(n, np.inf) if np.isscalar(reach) and np.isinf(float(np.max(reach))) else beside * reach
     joined = distances <= np.minimum(far[:, None], far[None])
     i = np.arange(n - 1)
