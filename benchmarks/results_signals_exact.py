@@ -1,6 +1,6 @@
 """Exactness of the literal representation: k - 2 = l = m + 1 = T gives every frame back.
 
-python benchmarks/results_signals_exact.py [CLIP ...]      all clips in all shape spaces, renews the table
+python benchmarks/results_signals_exact.py [CLIP ...]      all clips, or some, in all shape spaces
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from real_bodies import DATA
-from results_page import line, table, write_block
+from results_page import PAGE, line, table, write_block
 from tempose.clips import MeshClip
 from tempose.formats import load_clip
 from tempose.samples import sample_clip
@@ -73,12 +73,17 @@ def row(name: str, clip: MeshClip) -> str:
 
 
 def main() -> None:
-    chosen = sys.argv[1:] or list(CLIPS)
-    rows = [row(name, CLIPS[name]()) for name in chosen]
-    if chosen == list(CLIPS):
-        write_block("signals-exact", table(COLUMNS, rows))
-    else:
-        print("\n".join(table(COLUMNS, rows)))
+    for name in sys.argv[1:] or CLIPS:
+        renewed = row(name, CLIPS[name]())
+        kept = {**written_rows(), name: renewed}
+        write_block("signals-exact", table(COLUMNS, [kept[n] for n in CLIPS if n in kept]))
+
+
+def written_rows() -> dict[str, str]:
+    """Rows that the page has, by clip: some take minutes, so each is renewed for itself."""
+    block = PAGE.read_text(encoding="utf-8").partition("<!-- signals-exact -->")[2]
+    lines = block.partition("<!-- /signals-exact -->")[0].strip().split("\n")[2:]
+    return {text.split("|")[1].strip(): text for text in lines if text.startswith("|")}
 
 
 if __name__ == "__main__":

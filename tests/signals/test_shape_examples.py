@@ -67,6 +67,13 @@ def test_what_examples_leave_out_is_reported_and_not_held_against_the_rest() -> 
     assert report["budget"]["h"] > 1 and report["budget"]["g"] <= 0.1
 
 
+@pytest.mark.parametrize("space", ["vertex", "gradient"])
+def test_a_tolerance_is_met_with_examples_that_span_the_clip(space: str) -> None:
+    clip = wandering()
+    report = SignalModel(space, tolerance=0.5).fit(clip, examples=clip.vertices).report_
+    assert report["paper"]["rms_percent"] <= 0.6 and report["l"] > 3
+
+
 def test_meshes_do_as_examples() -> None:
     clip = wandering()
     poses = [Mesh(V, clip.faces) for V in clip.vertices[[0, 4, 8]]]

@@ -170,10 +170,13 @@ def rescaled(fitted: FittedShape, check: Percent) -> FittedShape:
     FittedShape
         The same with its scale.
     """
-    frames = checked_frames(len(fitted.X))
-    outside = float(fitted.left_out[frames].sum()) * len(fitted.X) / len(frames)
-    found = check(fitted.shape.mean + fitted.X[frames] @ fitted.shape.components, frames)
-    return replace(fitted, scale=found / np.sqrt(outside) if outside > 0 else 0.0)
+    frames, T = checked_frames(len(fitted.X)), len(fitted.X)
+    Z = fitted.X[frames] @ fitted.shape.components
+    size, outside = float(np.square(Z).sum()), float(fitted.left_out[frames].sum())
+    if outside < 1e-6 * size:  # the subspace holds the clip: look at a tenth less of its motion instead
+        Z, outside = 0.9 * Z, outside + 0.01 * size
+    found = check(fitted.shape.mean + Z, frames)
+    return replace(fitted, scale=found / np.sqrt(outside * T / len(frames)) if outside > 0 else 0.0)
 
 
 def checked_frames(T: int) -> IntArray:
