@@ -89,7 +89,7 @@ def transfer(model: SignalModel) -> None:
         for key, animal in (("source", "horse"), ("target", "elephant"))
     }
     elephant = model.edited([{"op": "replace_shape", **files, "space": "gradient"}])
-    sheet("elephant", [model.clip(), elephant.clip()], ["captured", "by eight pairs of poses"])
+    sheet("replace-shape", [model.clip(), elephant.clip()], ["captured", "by eight pairs of poses"])
 
 
 def from_scratch() -> None:
