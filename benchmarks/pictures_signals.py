@@ -78,7 +78,7 @@ def edits(model: SignalModel) -> None:
     slow = model.edited([{"op": "speed", "from": 8, "to": 16, "factor": 0.4}])
     save("speed", draw_retiming(slow.signals_))
     drawn = [[11.0, -9.0], [0.0, -6.0], [-2.0, 4.0], [8.0, 8.0], [13.0, 6.0]]
-    plane("insert-curve", model.edited([{"op": "insert_curve", "at": 12, "points": drawn, "frames": 24}]))
+    plane("insert-curve", model.edited([{"op": "insert_curve", "at": 12, "points": drawn, "frames": 10}]))
     plane("blend", model.edited([{"op": "blend", "from": 14, "to": 20, "frames": 4}]))
     plane("close-loop", model.edited([{"op": "close_loop", "from": 3, "to": 15}]))
 
