@@ -51,7 +51,7 @@ def elastic_ring(n_frames: int = 204, around: int = 66, across: int = 44, fps: f
     """
     V, F = _torus(around, across)
     clusters = _Clusters(V, np.arctan2(V[:, 2], V[:, 0]))
-    x, v = V + [0.0, 0.6, 0.0], np.zeros_like(V)
+    x, v = V + np.array([0.0, 0.6, 0.0]), np.zeros_like(V)
     steps, frames = round(400 / fps), []
     dt = 1.0 / (steps * fps)
     for frame in range(n_frames):

@@ -112,7 +112,9 @@ def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
     for name, target in _targets(X, distances, path):
         result = PoseLayout(target).solve(pins)
         tried.append(judge_layout(name, result.positions, X, result.stress, path))
-        if not _good(tried[-1], tried[0]) and tried[-1].aspect > 0 and len(X) <= LONGEST:
+        # a line has no width to smooth, and stays one
+        wide = tried[-1].aspect > 0 and _broad(tried[-1], tried[0])
+        if not _good(tried[-1], tried[0]) and wide and len(X) <= LONGEST:
             P = smooth_transitions(result.positions, main_columns(X), target, frames)
             stress = stress_of(P, distances)
             tried.append(judge_layout(f"{name}, smoothed", P, X, stress, path))
