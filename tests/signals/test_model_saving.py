@@ -112,6 +112,32 @@ def test_arrays_that_do_not_fit_are_told(name: str, tmp_path: Path) -> None:
         SignalModel.load(path)
 
 
+def test_a_damaged_file_is_told_or_still_a_model(tmp_path: Path, rng: np.random.Generator) -> None:
+    whole = SignalModel(placement=True, window=16).fit(swinging()).save(tmp_path / "m.tempose").read_bytes()
+    header = 8 + int.from_bytes(whole[:8], "little")
+    refused = 0
+    for i in range(150):
+        damaged = bytearray(whole)
+        for at in rng.integers(0, header if i % 2 else len(whole), 2):
+            damaged[at] = rng.integers(32, 127)
+        (tmp_path / "n.tempose").write_bytes(damaged)
+        try:
+            assert isinstance(SignalModel.load(tmp_path / "n.tempose"), SignalModel)
+        except ValueError as error:
+            refused += 1
+            assert str(tmp_path / "n.tempose") in str(error)
+    assert refused > 75
+
+
+def test_a_rate_that_is_none_is_told(tmp_path: Path) -> None:
+    path = SignalModel().fit(wandering()).save(tmp_path / "m.tempose")
+    arrays, header = load_model(path, "signals")
+    header["tree"]["signals_"]["fields"]["fps"] = 0
+    save_model(path, "signals", arrays, header)
+    with pytest.raises(ValueError, match="fps and rate must be positive"):
+        SignalModel.load(path)
+
+
 def test_a_file_cannot_name_what_is_no_part_of_signals(tmp_path: Path) -> None:
     path = SignalModel().fit(wandering()).save(tmp_path / "m.tempose")
     arrays, header = load_model(path, "signals")

@@ -87,6 +87,9 @@ def read_signal_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
         for name, expected in _PARTS.items():
             if not isinstance(state[name], expected):
                 raise ValueError(f"{name} is {type(state[name]).__name__}, not {expected.__name__}")
+        signals = state["signals_"]
+        if not (0 < signals.fps < np.inf and 0 < signals.rate < np.inf):
+            raise ValueError(f"fps and rate must be positive, got {signals.fps} and {signals.rate}")
         state["report_"], state["edits_"] = dict(header["report"]), tuple(header["edits"])
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{path}: a model of signals whose parts do not fit together: {error}") from None
