@@ -7,8 +7,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.distance import cdist
 
+from tempose.signals.pose.judge import curve_through
 from tempose.signals.pose.layout import PoseLayout
 from tempose.signals.pose.sites import order_sites
+from tempose.signals.pose.transitions import find_bad_transitions
 from tempose.signals.windows import WindowedFit, WindowedPose, cover, fit_windowed_pose, fit_windows
 from tempose.typing import FloatArray
 
@@ -130,3 +132,16 @@ def test_places_given_are_kept() -> None:
     X, P = pacing(150), np.random.default_rng(3).standard_normal((150, 2))
     pose = fit_windowed_pose(P, X, cover(150, 60, 20))
     assert_allclose(pose(P, np.arange(150.0)), X, atol=1e-9)
+
+
+def test_no_transition_strays_where_the_number_of_sites_is_free() -> None:
+    # a figure traced in many dimensions crosses itself in the plane: there g alone would be torn
+    t = np.arange(300) / 11
+    X = np.stack([np.sin(k * t + k * k) / k for k in range(1, 7)], axis=1)
+    plain, free = fit_windows(X, 100, 30, sites=10_000), fit_windows(X, 100, 30)
+    f = curve_through(free.positions)
+    assert_array_equal(plain.positions, free.positions)
+    before, after = (find_bad_transitions(fit.pose, f, X) for fit in (plain, free))
+    assert before.bad.sum() > 5 and after.bad.sum() == 0
+    assert len(plain.middles) == 0 and len(free.middles) >= 3 * 5
+    assert free.errors.max() < 1e-10

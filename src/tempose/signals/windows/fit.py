@@ -8,9 +8,12 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.signals.fidelity import choose_sites
+from tempose.signals.pose.judge import curve_through
 from tempose.signals.pose.pins import Pins
 from tempose.signals.pose.signal import PoseSignal
 from tempose.signals.pose.sites import order_sites
+from tempose.signals.pose.transitions import find_bad_transitions
+from tempose.signals.time.path import time_path
 from tempose.signals.windows.cover import Cover, cover
 from tempose.signals.windows.layout import KEYS, LongLayout, long_layout
 from tempose.signals.windows.pose import WindowedPose
@@ -19,8 +22,8 @@ from tempose.typing import FloatArray, Progress, silent
 WINDOW = 300
 """Frames of a window: the greedy order of sites costs their cube, and a surface has few folds for so many."""
 
-OVERLAP = 60
-"""Frames that neighbouring windows share."""
+ROUNDS = 5
+"""How often transitions are judged; two or three times samples have to be added."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,8 @@ class WindowedFit:
     """Where the frames lie."""
     errors: FloatArray
     """(T,) squared residual of g at each frame."""
+    middles: FloatArray
+    """(e,) ticks between frames to which g was fitted, too, since transitions there were bad."""
 
     @property
     def positions(self) -> FloatArray:
@@ -62,7 +67,8 @@ def fit_windows(
     overlap : int, optional
         Frames that neighbouring windows share; a fifth of a window if left out.
     sites : int, optional
-        Number of sites in each window.
+        Number of sites in each window; then g is fitted to frames alone. Left out, it is also fitted to the
+        smooth motion between frames where it would stray from it.
     limit : float, default 0
         Where `sites` is left out: the largest mean squared residual of the frames of a window. 0 takes all.
     keys : int, default 300
@@ -85,9 +91,13 @@ def fit_windows(
     X = as_floats(X, "X", ("T", "m"))
     windows = cover(len(X), window, window // 5 if overlap is None else overlap)
     layout = long_layout(X, len(X) if len(windows) == 1 else keys, pins, progress)
-    pose = fit_windowed_pose(layout.positions, X, windows, sites=sites, limit=limit, progress=progress)
+    if sites is None:
+        pose, middles = _without_bad_transitions(layout.positions, X, windows, limit, progress)
+    else:
+        middles = np.zeros(0)
+        pose = fit_windowed_pose(layout.positions, X, windows, sites=sites, progress=progress)
     found = pose(layout.positions, np.arange(float(len(X))))
-    return WindowedFit(pose, layout, np.square(found - X).sum(axis=1))
+    return WindowedFit(pose, layout, np.square(found - X).sum(axis=1), middles)
 
 
 def fit_windowed_pose(
@@ -124,9 +134,47 @@ def fit_windowed_pose(
     signals: list[PoseSignal] = []
     for i in range(len(windows)):
         frames = windows.frames(i)
-        order = order_sites(P[frames], X[frames])
         n_frames = frames.stop - frames.start
-        l = choose_sites(order.errors, 0.0, limit * n_frames) if sites is None else min(sites, n_frames)
-        signals.append(order.signal(max(l, order.least)))
+        number = None if sites is None else min(sites, n_frames)
+        signals.append(_fit_one(P[frames], X[frames], number, limit * n_frames))
         progress(i + 1, len(windows), "pose signal")
     return WindowedPose(tuple(signals), windows)
+
+
+def _fit_one(P: FloatArray, X: FloatArray, sites: int | None, allowed: float) -> PoseSignal:
+    order = order_sites(P, X)
+    number = choose_sites(order.errors, 0.0, allowed) if sites is None else sites
+    return order.signal(max(number, order.least))
+
+
+def _without_bad_transitions(
+    P: FloatArray, X: FloatArray, windows: Cover, limit: float, progress: Progress
+) -> tuple[WindowedPose, FloatArray]:
+    """Fit windows; where g strays between frames, fit them anew to the smooth motion there as well."""
+    pose = fit_windowed_pose(P, X, windows, limit=limit, progress=progress)
+    if len(X) < 3:
+        return pose, np.zeros(0)
+    curve, path = curve_through(P), time_path(X, None)
+    middles = np.zeros(0)
+    best, best_middles, fewest = pose, middles, len(X)
+    for _ in range(ROUNDS):
+        bad = np.flatnonzero(find_bad_transitions(pose, curve, X, path=path).bad)
+        if len(bad) < fewest:
+            best, best_middles, fewest = pose, middles, len(bad)
+        if len(bad) == 0:
+            break
+        fresh = np.setdiff1d((bad[:, None] + np.array([0.25, 0.5, 0.75])).ravel(), middles)
+        middles = np.union1d(middles, fresh)
+        signals = list(pose.windows)
+        for i in range(len(windows)):
+            if len(_inside(windows.frames(i), fresh)):
+                frames, here = windows.frames(i), _inside(windows.frames(i), middles)
+                places = np.concatenate([P[frames], curve(here)])
+                values = np.concatenate([X[frames], path(here)])
+                signals[i] = _fit_one(places, values, None, limit * (frames.stop - frames.start))
+        pose = WindowedPose(tuple(signals), windows)
+    return best, best_middles
+
+
+def _inside(frames: slice, ticks: FloatArray) -> FloatArray:
+    return ticks[(ticks > frames.start) & (ticks < frames.stop - 1)]
