@@ -115,7 +115,7 @@ def test_arrays_that_do_not_fit_are_told(name: str, tmp_path: Path) -> None:
 def test_a_damaged_file_is_told_or_still_a_model(tmp_path: Path, rng: np.random.Generator) -> None:
     whole = SignalModel(placement=True, window=16).fit(swinging()).save(tmp_path / "m.tempose").read_bytes()
     header = 8 + int.from_bytes(whole[:8], "little")
-    refused = 0
+    refused = told = 0
     for i in range(150):
         damaged = bytearray(whole)
         for at in rng.integers(0, header if i % 2 else len(whole), 2):
@@ -125,8 +125,8 @@ def test_a_damaged_file_is_told_or_still_a_model(tmp_path: Path, rng: np.random.
             assert isinstance(SignalModel.load(tmp_path / "n.tempose"), SignalModel)
         except ValueError as error:
             refused += 1
-            assert str(tmp_path / "n.tempose") in str(error)
-    assert refused > 75
+            told += str(tmp_path / "n.tempose") in str(error)
+    assert refused == told > 75
 
 
 def test_a_rate_that_is_none_is_told(tmp_path: Path) -> None:
