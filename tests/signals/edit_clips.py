@@ -49,7 +49,9 @@ def bending(T: int = 24, cycles: float = 1.7, drift: float = 0.0, **shape: float
 def signals_of(clip: MeshClip, space: str = "vertex", **options: object) -> Signals:
     """Signals that pass through every frame."""
     T = clip.n_frames
-    fitted = SignalModel(space, **{"k": T + 2, "l": T, "m": T - 1, "period": None, **options})  # type: ignore[arg-type]
+    fitted = SignalModel(
+        space, **{"k": T + 2, "l": T, "m": T - 1, "period": None, "layout": "mds", **options}
+    )  # type: ignore[arg-type]
     return fitted.fit(clip).signals_
 
 

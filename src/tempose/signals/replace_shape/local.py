@@ -7,6 +7,7 @@ pairs: the inner products of the source poses count most in the regions whose po
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,27 +73,30 @@ def fit_local_map(source: FloatArray, target: FloatArray) -> LocalMap:
         With the ridge that predicts pairs left out best, and the least sharpness that does so no worse than
         the best one by one standard error.
     """
-    found = {(b, r): _left_out(source, target, b, r) for b in SHARPNESS for r in RIDGES}
+    found = _left_out(source, target)
     means = {key: float(errors.mean()) for key, errors in found.items()}
     best = min(means, key=lambda key: means[key])
     limit = means[best] + float(found[best].std(ddof=1)) / np.sqrt(len(found[best]))
     sharpness = min(b for b, r in found if means[b, r] <= limit)
     ridge = min(RIDGES, key=lambda r: means[sharpness, r])
     plain = min(means[0.0, r] for r in RIDGES)
-    weights = _likeness(source, target, sharpness)
+    weights = _weights(source, _likeness(source, target), sharpness)
     return LocalMap(
         source, weights, sharpness, ridge, float(np.sqrt(means[sharpness, ridge])), float(np.sqrt(plain))
     )
 
 
-def _likeness(source: FloatArray, target: FloatArray, sharpness: float) -> FloatArray:
-    """Compare how poses differ in regions: cosines of centred inner products, as powers."""
-    s, t = _centred(source), _centred(target)
-    tiny = np.finfo(float).tiny
-    unit_s = s / np.maximum(np.linalg.norm(s, axis=(1, 2), keepdims=True), tiny)
-    unit_t = t / np.maximum(np.linalg.norm(t, axis=(1, 2), keepdims=True), tiny)
-    alike = np.maximum(np.einsum("sij,tij->ts", unit_s, unit_t), LEAST_LIKE) ** sharpness
-    return alike / np.maximum(alike @ np.trace(s, axis1=1, axis2=2), tiny)[:, None]
+def _likeness(source: FloatArray, target: FloatArray) -> FloatArray:
+    """Compare how poses differ in regions: (L, K) cosines of centred inner products."""
+    s, t = (_centred(G).reshape(len(G), -1) for G in (source, target))
+    s, t = (g / np.maximum(np.linalg.norm(g, axis=1, keepdims=True), np.finfo(float).tiny) for g in (s, t))
+    return np.maximum(t @ s.T, LEAST_LIKE)
+
+
+def _weights(source: FloatArray, likeness: FloatArray, sharpness: float) -> FloatArray:
+    alike = likeness**sharpness
+    traces = np.trace(_centred(source), axis1=1, axis2=2)
+    return alike / np.maximum(alike @ traces, np.finfo(float).tiny)[:, None]
 
 
 def _centred(G: FloatArray) -> FloatArray:
@@ -110,20 +114,25 @@ def _multiples(source: FloatArray, weights: FloatArray, ridge: float, frames: Fl
     return a - a.mean(axis=2, keepdims=True) + 1.0 / n
 
 
-def _left_out(source: FloatArray, target: FloatArray, sharpness: float, ridge: float) -> FloatArray:
-    """Return, for every pair, the squared error of predicting it from the others, of what the mean leaves."""
+def _left_out(source: FloatArray, target: FloatArray) -> Mapping[tuple[float, float], FloatArray]:
+    """Return, for every pair, the squared error of predicting it, of what the others' mean leaves."""
     N = source.shape[1]
-    errors = np.zeros(N)
+    errors = {(b, r): np.zeros(N) for b in SHARPNESS for r in RIDGES}
     for j in range(N):
         rest = np.delete(np.arange(N), j)
         some = source[:, rest][:, :, rest]
-        weights = _likeness(some, target[:, rest][:, :, rest], sharpness)
-        a = _multiples(some, weights, ridge, source[:, j, rest][:, None])[:, 0]
-        errors[j] = _squared(target, rest, j, a) / _squared(target, rest, j, np.full_like(a, 1 / len(rest)))
+        likeness = _likeness(some, target[:, rest][:, :, rest])
+        own = source[:, j, rest][:, None]
+        mean = _squared(target, rest, j, np.full((len(target), N - 1), 1 / (N - 1)))
+        for sharpness in SHARPNESS:
+            weights = _weights(some, likeness, sharpness)
+            for ridge in RIDGES:
+                a = _multiples(some, weights, ridge, own)[:, 0]
+                errors[sharpness, ridge][j] = _squared(target, rest, j, a) / mean
     return errors
 
 
 def _squared(target: FloatArray, rest: IntArray, j: int, a: FloatArray) -> float:
     c = np.zeros((len(target), target.shape[1]))
     c[:, rest], c[:, j] = a, -1.0
-    return max(float(np.einsum("pi,pij,pj->", c, target, c)), np.finfo(float).tiny)
+    return max(float(np.sum((c[:, None] @ target)[:, 0] * c)), np.finfo(float).tiny)

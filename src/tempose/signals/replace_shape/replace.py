@@ -109,7 +109,7 @@ def replace_shape(
     .. [2] Baran, Vlasic, Grinspun and Popovic, "Semantic deformation transfer", SIGGRAPH 2009.
     """
     q, r = as_poses(source, "source"), as_poses(target, "target")
-    count = _check_poses(signals, q, r, use)
+    count, travel = _check_poses(signals, q, r, use), _travel_scale(scale, q, r)
     name = space or signals.shape.space.name
     bodies, centre = q.aligned()
     space_q = shape_space(name, bodies[0], q.mesh.faces, bodies)
@@ -129,7 +129,7 @@ def replace_shape(
         covered_r = regions_of(space_r, bodies[0], r.mesh.faces, wanted)
         shape, X, local = _by_regions(readings, reader, mixtures, space_r, bodies, covered_r)
     placements = captured.placements
-    placements[:, 4:] = centre_r + _travel_scale(scale, q, r) * (placements[:, 4:] - centre)
+    placements[:, 4:] = centre_r + travel * (placements[:, 4:] - centre)
     new = replace(
         signals,
         shape=shape,
