@@ -23,7 +23,10 @@ REACHES = (4.0, 3.0, 2.5, 2.0)
 LEAST_ASPECT = 0.2
 """A layout flatter than this has become a line along time."""
 
-LONGEST = 600
+CALM = 0.25
+"""Transitions that stray by no more steps than this are left as they are."""
+
+LONGEST = 400
 """Clips of more frames are laid out but not smoothed: a step takes the cube of the frames."""
 
 
@@ -87,7 +90,7 @@ def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
     Returns
     -------
     LayoutChoice
-        Plain scaling where its transitions are good, else the first layout without bad ones, else the best.
+        Plain scaling, smoothed unless its transitions are calm; else the first layout without bad ones.
 
     Raises
     ------
@@ -110,16 +113,17 @@ def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
     path = interpolating_spline(np.arange(len(X), dtype=np.float64), X)
     tried: list[Judgement] = []
     for name, target in _targets(X, distances, path):
-        result = PoseLayout(target).solve(pins)
+        first, result = len(tried), PoseLayout(target).solve(pins)
         tried.append(judge_layout(name, result.positions, X, result.stress, path))
         # a line has no width to smooth, and stays one
         wide = tried[-1].aspect > 0 and _broad(tried[-1], tried[0])
-        if not _good(tried[-1], tried[0]) and wide and len(X) <= LONGEST:
+        if tried[-1].transitions.worst > CALM and wide and len(X) <= LONGEST:
             P = smooth_transitions(result.positions, main_columns(X), target, frames)
             stress = stress_of(P, distances)
             tried.append(judge_layout(f"{name}, smoothed", P, X, stress, path))
-        if _good(tried[-1], tried[0]):
-            return _chosen(tried[-1], tried, warnings)
+        best = min(tried[first:], key=_badness)
+        if _good(best, tried[0]):
+            return _chosen(best, tried, warnings)
     best = min((t for t in tried if _broad(t, tried[0])), key=_badness)
     return _with_middles(best, tried, X, path, warnings)
 
