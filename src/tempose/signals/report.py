@@ -144,7 +144,9 @@ def error_budget(fitted: FittedClip) -> dict[str, float]:
 def _result_warnings(floor: float, options: FitOptions, paper: dict[str, float | None]) -> list[str]:
     """Say what only the finished fit shows."""
     found: list[str] = []
-    if floor > ROUNDING:
+    # where all frames are wanted back any floor matters, else only one near the tolerance
+    exact = None not in (options.k, options.l, options.m)
+    if floor > (ROUNDING if exact else 0.01 * options.percent):
         found.append(
             f"frames that repeat lie at one place: g(f(t)) cannot be nearer to the clip than {floor:.2g} % "
             "of the diagonal, whatever k, l and m"
