@@ -128,7 +128,7 @@ def rows(name: str, pictures: bool = False) -> list[str]:
         if choice.name != "mds":
             found.append(case.row(f"automatic: {choice.name}", choice.positions, samples, choice))
             print(found[-1], flush=True)
-        if pictures and every == steps[0] and name in ("gestures", "horse"):
+        if pictures and every == steps[0] and name == "gestures":
             before, after = (
                 case.signals(plain.positions, (plain.positions, case.X)),
                 case.signals(choice.positions, samples),

@@ -57,6 +57,8 @@ def _shared_places(frames: IntArray, places: FloatArray, distances: FloatArray) 
     extent = max(float(np.abs(places - places.mean(axis=0)).max()), 1e-300)
     gaps = np.linalg.norm(places[:, None] - places[None], axis=2)
     a, b = np.nonzero(np.triu(gaps <= 1e-9 * extent, 1))
+    if len(a) == 0:
+        return ()
     apart = distances[frames[a], frames[b]]
     differ = apart > 1e-9 * distances.max()
     if not differ.any():
