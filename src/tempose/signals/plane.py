@@ -110,10 +110,12 @@ def _laid_out(
         _note_layout(notes, "mds", result.stress, result.warnings)
         return result.positions, np.zeros(0)
     choice = choose_layout(X, pins)
+    middles = choice.middles if options.l is None else np.zeros(0)
+    name = choice.name if len(middles) else choice.name.removesuffix(" + middles")
     strays = [w for w in choice.warnings if "stray" not in w]  # measured on the final signals instead
-    _note_layout(notes, choice.name, choice.stress, tuple(strays))
+    _note_layout(notes, name, choice.stress, tuple(strays))
     notes.facts["layout"] |= {"aspect": choice.aspect, "crossings": choice.crossings}
-    return choice.positions, choice.middles if options.l is None else np.zeros(0)
+    return choice.positions, middles
 
 
 def _check_reach(X: FloatArray, pins: Mapping[int, FloatArray]) -> None:
