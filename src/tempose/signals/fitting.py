@@ -211,9 +211,9 @@ def _path(frames: ClipFrames, shape: FittedShape, options: FitOptions, notes: No
     with notes.stage("path"):
         if options.period == "auto":
             found = find_period(_places(frames, shape))
-            period = None if found is None else found.ticks
-        else:
-            period = None if options.period is None else float(options.period)
+            notes.facts["period"] = None if found is None else found.ticks
+            return time_path(shape.X, found.ticks if found is not None and found.interleaves else None)
+        period = None if options.period is None else float(options.period)
         notes.facts["period"] = period
         return time_path(shape.X, period)
 

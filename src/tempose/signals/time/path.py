@@ -6,7 +6,7 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.curves import Spline, insert_knots, interpolating_spline, periodic_spline, slice_spline
-from tempose.typing import FloatArray
+from tempose.typing import FloatArray, IntArray
 
 SAME_PHASE = 0.05
 """Ticks; frames nearer than this in phase are one place of the cycle."""
@@ -70,12 +70,43 @@ def path_through(ticks: FloatArray, X: FloatArray, period: float | None) -> Spli
         return interpolating_spline(ticks, X)
     if not 0 < period < ticks[-1] - ticks[0]:
         raise ValueError(f"period must be shorter than {ticks[-1] - ticks[0]:.6g} ticks, got {period:.6g}")
-    cycle = cycle_spline(ticks, X, period)
-    if len(cycle.breaks) - 1 < _FINER * period * len(ticks) / (ticks[-1] - ticks[0]):
+    if _repeats(ticks, period):
         return interpolating_spline(ticks, X)
+    cycle = cycle_spline(ticks, X, period)
     rolled = unrolled(cycle, float(ticks[0]), float(ticks[-1]))
     missed = interpolating_spline(ticks, X - rolled(ticks))
     return _sum(rolled, missed)
+
+
+def repeats_phases(n: int, period: float) -> bool:
+    """Return whether all cycles show about the same phases, so that they tell nothing of what lies between.
+
+    Parameters
+    ----------
+    n : int
+        Frames, one a tick.
+    period : float
+        Ticks of a cycle.
+
+    Returns
+    -------
+    bool
+        Whether hardly more places of the cycle are known than ticks it has.
+    """
+    return _repeats(np.arange(float(n)), period)
+
+
+def _repeats(ticks: FloatArray, period: float) -> bool:
+    places = _places(np.sort(ticks % period), period)[-1] + 1
+    return bool(places < _FINER * period * len(ticks) / (ticks[-1] - ticks[0]))
+
+
+def _places(phases: FloatArray, period: float) -> IntArray:
+    # phases one after another; those at the end of the cycle may belong to its begin
+    groups = np.concatenate([[0], np.cumsum(np.diff(phases) > SAME_PHASE)])
+    if groups[-1] and phases[0] + period - phases[-1] <= SAME_PHASE:
+        groups[groups == groups[-1]] = 0
+    return np.append(groups, groups.max())
 
 
 def cycle_spline(ticks: FloatArray, X: FloatArray, period: float) -> Spline:
@@ -98,10 +129,8 @@ def cycle_spline(ticks: FloatArray, X: FloatArray, period: float) -> Spline:
     phases = ticks % period
     order = np.argsort(phases, kind="stable")
     phases, X = phases[order], X[order]
-    groups = np.concatenate([[0], np.cumsum(np.diff(phases) > SAME_PHASE)])
-    if groups[-1] and phases[0] + period - phases[-1] <= SAME_PHASE:  # round the end of the cycle
-        last = groups == groups[-1]
-        phases, groups = np.where(last, phases - period, phases), np.where(last, 0, groups)
+    groups = _places(phases, period)[:-1]
+    phases = np.where((groups == 0) & (phases > 0.5 * period), phases - period, phases)
     counts = np.bincount(groups)
     at = np.bincount(groups, phases) / counts
     mean = np.zeros((len(counts), X.shape[1]))

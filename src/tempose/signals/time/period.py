@@ -9,12 +9,12 @@ import numpy as np
 from tempose._validate import as_floats
 from tempose.curves import interpolating_spline
 from tempose.signals.time._period_scan import phase_errors
-from tempose.signals.time.path import SAME_PHASE
+from tempose.signals.time.path import SAME_PHASE, path_through, repeats_phases
 from tempose.typing import BoolArray, FloatArray
 
 _MODES = 12
 _WINDOW = 240  # frames; of a longer clip the middle is searched
-_CLEARLY = 0.7  # of the cubic's error
+_CLEARLY, _SURELY = 0.7, 0.25  # of the cubic's error
 _LEAST = 3.0  # frames; less than that could be any of many periods
 
 
@@ -25,9 +25,11 @@ class Period:
     ticks: float
     """Frames of the captured clip after which it repeats."""
     error: float
-    """rms error of frames left out one by one and predicted with the period, in shape coordinates."""
+    """rms error of frames left out and predicted with the period, in shape coordinates."""
     cubic: float
     """What the cubic in time is expected to miss between two frames."""
+    interleaves: bool
+    """Whether frames of other cycles surely tell what lies between two frames better than the cubic does."""
 
 
 def find_period(X: FloatArray) -> Period | None:
@@ -41,9 +43,8 @@ def find_period(X: FloatArray) -> Period | None:
     Returns
     -------
     Period or None
-        None for a clip that does not repeat, or too little for the period to tell more than the neighbouring
-        frames: taken is only a period that wins when frames are left out, clearly and against what the cubic
-        would do with all of them.
+        None for a clip that does not repeat, or too little to say after how many frames: a period must
+        predict frames that are left out clearly better than the cubic in time can be expected to do with all.
     """
     X = as_floats(X, "X", ("n", "m"))
     start = max((len(X) - _WINDOW) // 2, 0)
@@ -56,25 +57,63 @@ def find_period(X: FloatArray) -> Period | None:
     if cubic <= 1e-9 * scale or not _comes_back(X, cubic):
         return None
     found = [_refined(X, ticks) for ticks in _candidates(X)]
-    found = [(ticks, error) for ticks, error in found if error < _CLEARLY * cubic]
-    if not found or _ambiguous(found, 0.05 * cubic):
+    return _whole(X, found, cubic) or _fraction(X, found, cubic)
+
+
+def _whole(X: FloatArray, found: list[tuple[float, float]], cubic: float) -> Period | None:
+    # cycles that show the same phases: each frame has a twin, what lies between is left to the cubic
+    same = [
+        (ticks, error) for ticks, error in found if error < _CLEARLY * cubic and repeats_phases(len(X), ticks)
+    ]
+    if not same:
         return None
-    # of a period of whole frames any fraction predicts each frame by its twin: what lies between tells more
-    least = min(error for _, error in found)
-    found = [f for f in found if f[1] <= max(1.5 * least, 0.05 * cubic)]
-    between = phase_errors(X, np.array([ticks for ticks, _ in found]), SAME_PHASE, True)
-    good = [f for f, error in zip(found, between) if error <= 1.05 * between.min() + 1e-12 * scale]
-    ticks, error = min(good)
-    return Period(ticks, error, cubic)
+    least = min(error for _, error in same)
+    same = [f for f in same if f[1] <= max(1.5 * least, 0.05 * cubic)]
+    # any fraction of a whole period finds the twins, too; the frames beside them it does not
+    between = phase_errors(X, np.array([ticks for ticks, _ in same]), SAME_PHASE, True)
+    between = between * [1.0 if ticks == round(ticks) else 1 / _CLEARLY for ticks, _ in same]
+    ticks, error = min(f for f, e in zip(same, between) if e <= 1.05 * between.min() + 1e-12 * cubic)
+    return Period(ticks, error, cubic, interleaves=False)
 
 
-def _ambiguous(found: list[tuple[float, float]], small: float) -> bool:
+def _fraction(X: FloatArray, found: list[tuple[float, float]], cubic: float) -> Period | None:
+    # cycles that interleave: of frames left out one by one and every second one the worse counts
+    new = [(error, ticks) for ticks, error in found if not repeats_phases(len(X), ticks)]
+    judged = [(max(error, _every_second(X, ticks)), ticks) for error, ticks in new]
+    sure = _best(judged, _SURELY * cubic)
+    if sure is not None and _spread(len(X), sure[1]) > 0.5:
+        return Period(sure[1], sure[0], cubic, interleaves=True)
+    clear = _best(new, _CLEARLY * cubic)
+    return None if clear is None else Period(clear[1], clear[0], cubic, interleaves=False)
+
+
+def _spread(n: int, period: float) -> float:
+    # 1 if the frames of all cycles are spaced evenly, 0 if they fall together, by the gaps one meets
+    phases = np.sort(np.arange(n) % period)
+    gaps = np.diff(phases, append=phases[0] + period)
+    return float((1 - np.square(gaps).sum() / gaps.sum()) / (1 - period / n))
+
+
+def _best(judged: list[tuple[float, float]], limit: float) -> tuple[float, float] | None:
+    if not judged or min(judged)[0] >= limit:
+        return None
+    least, best = min(judged)
     # few frames suit several periods: two that have nothing to do with each other and do about as well
-    best, least = min(found, key=lambda f: f[1])
-    if least < small:
-        return False
-    ratios = [max(ticks, best) / min(ticks, best) for ticks, error in found if error < 1.25 * least]
-    return any(abs(ratio - round(ratio)) > 0.06 * ratio for ratio in ratios)
+    ratios = [max(ticks, best) / min(ticks, best) for error, ticks in judged if error < 1.25 * least]
+    return None if any(abs(ratio - round(ratio)) > 0.06 * ratio for ratio in ratios) else (least, best)
+
+
+def _every_second(X: FloatArray, period: float) -> float:
+    # just what the path will be used for, with half of the frames
+    ticks, total, count = np.arange(float(len(X))), 0.0, 0
+    for first in (0, 1):
+        kept = ticks[first::2]
+        missing = np.arange(kept[0] + 1, kept[-1], 2)
+        if len(missing) == 0 or not period < kept[-1] - kept[0]:
+            return np.inf
+        off = path_through(kept, X[first::2], period)(missing) - X[missing.astype(int)]
+        total, count = total + float(np.square(off).sum()), count + len(missing)
+    return float(np.sqrt(total / count))
 
 
 def _main_modes(X: FloatArray) -> FloatArray:
