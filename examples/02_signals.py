@@ -2,7 +2,7 @@
 
 Put your own clip in place of the built-in one::
 
-    clip = tempose.formats.load_clip("cloth.abc")
+    clip = tempose.formats.load_clip("cloth.npz")
 """
 
 from pathlib import Path

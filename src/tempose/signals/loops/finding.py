@@ -76,7 +76,7 @@ def find_loops(X: FloatArray, shortest: int = 6, most: int = 8) -> list[Loop]:
         return []
     X = _reduced(X)
     # at the ends of the clip too as exact as inside, for clips that end where they begin
-    velocity = np.gradient(X, axis=0, edge_order=min(2, n - 1))
+    velocity = np.gradient(X, axis=0, edge_order=2 if n > 2 else 1)
     step = float(np.linalg.norm(np.diff(X, axis=0), axis=1).mean())
     speed = float(np.linalg.norm(velocity, axis=1).mean())
     if step == 0 or speed == 0:
