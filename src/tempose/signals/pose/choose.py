@@ -116,7 +116,7 @@ def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
         first, result = len(tried), PoseLayout(target).solve(pins)
         tried.append(judge_layout(name, result.positions, X, result.stress, path))
         # a line has no width to smooth, and stays one
-        wide = tried[-1].aspect > 0 and _broad(tried[-1], tried[0])
+        wide = tried[-1].aspect > 1e-6 and _broad(tried[-1], tried[0])
         if tried[-1].transitions.worst > CALM and wide and len(X) <= LONGEST:
             P = smooth_transitions(result.positions, main_columns(X), target, frames)
             stress = stress_of(P, distances)
