@@ -274,17 +274,17 @@ def test_refining_finds_the_mesh_again(rng: np.random.Generator) -> None:
 def test_refining_never_goes_up_and_measures_what_is_left() -> None:
     V, F = closed(2)
     frames = poses(V, 3, size=0.12)
-    spaces = [EdgeDihedralSpace(EdgeDihedralSpace.from_clip(V, F, frames).reference, k) for k in range(5)]
-    z = spaces[0].encode(frames[1:]).mean(axis=0)
-    found = [space.decode_measured(z) for space in spaces]
+    space = EdgeDihedralSpace.from_clip(V, F, frames)
+    z = space.encode(frames[1:]).mean(axis=0)
+    found = [space.decode_measured(z, k, near=0.0) for k in range(5)]
     distances = [f.distance for f in found]
     assert all(b <= a for a, b in itertools.pairwise(distances))
     assert distances[-1] < 0.9 * distances[0]
-    for space, f in zip(spaces, found):
+    for f in found:
         away = (space.encode(f.vertices) - z)[: space.n_shape]
         assert_allclose(np.linalg.norm(away), f.distance, rtol=1e-6)
     assert found[-1].mismatch > 1e-4
-    exact = spaces[-1].decode_measured(spaces[-1].encode(frames[1]))
+    exact = space.decode_measured(space.encode(frames[1]), near=0.0)
     assert (exact.n_iter, exact.converged) == (0, True)
     assert max(exact.distance, exact.mismatch) < 1e-9
 

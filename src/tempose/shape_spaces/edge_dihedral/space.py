@@ -24,7 +24,7 @@ from tempose.typing import FloatArray, IntArray
 _BEND = 0.3
 _SHORTEST = 1e-3
 _MISMATCH = 1e-6
-_NEAR = 1e-3
+_NEAR = 0.02
 _TURN = 2 * np.pi
 
 
@@ -52,8 +52,9 @@ class EdgeDihedralSpace:
     reference : Reference
         What is counted from; `from_clip` makes it.
     refinements : int, default 2
-        Gauss-Newton steps at most for coordinates that belong to no mesh; each costs a factorisation, some
-        ten times the rest of decoding. 0 leaves them out.
+        Gauss-Newton steps at most for coordinates further than 0.02 (an rms strain of 2 %) from those of the
+        mesh found: means of far poses, not frames of a clip with few modes left out. A step costs a
+        factorisation, some thirty times the rest of decoding.
 
     Notes
     -----
@@ -166,15 +167,19 @@ class EdgeDihedralSpace:
         return over_rows(self._decode, check_coordinates(z, self.dimension), 1, (self.n_vertices, 3))
 
     def _decode(self, z: FloatArray) -> FloatArray:
-        return self._decoded(z).vertices
+        return self._decoded(z, self.refinements, _NEAR).vertices
 
-    def decode_measured(self, z: FloatArray) -> Decoded:
+    def decode_measured(self, z: FloatArray, refinements: int | None = None, near: float = _NEAR) -> Decoded:
         """Build one mesh and say how near to the coordinates it came.
 
         Parameters
         ----------
         z : (d,) float
             Coordinates.
+        refinements : int, optional
+            Gauss-Newton steps at most; those of the space if not given.
+        near : float, default 0.02
+            Distance to the coordinates that needs no steps.
 
         Returns
         -------
@@ -186,15 +191,16 @@ class EdgeDihedralSpace:
         ValueError
             If the shape is wrong or a value is not finite.
         """
-        return self._decoded(check_coordinates(z, self.dimension).reshape(self.dimension))
+        z = check_coordinates(z, self.dimension).reshape(self.dimension)
+        return self._decoded(z, self.refinements if refinements is None else refinements, near)
 
-    def _decoded(self, z: FloatArray) -> Decoded:
+    def _decoded(self, z: FloatArray, refinements: int, near: float) -> Decoded:
         lengths = z[: self.n_edges] / self.length_weights
         lengths = np.maximum(lengths, _SHORTEST * self.reference.lengths)
         angles = z[self.n_edges : self.n_shape] / self.angle_weights
         built = self.assembly.build(lengths, angles)
-        steps = self.refinements if built.mismatch > _MISMATCH else 0
-        found = self.refinement.refine(built.vertices, lengths, angles, steps, _NEAR)
+        steps = refinements if built.mismatch > _MISMATCH else 0
+        found = self.refinement.refine(built.vertices, lengths, angles, steps, near)
         V = self.placement.place(found.vertices, z[self.n_shape :])
         return Decoded(V, np.sqrt(found.energy), built.mismatch, found.n_iter, found.converged or steps == 0)
 
