@@ -166,7 +166,8 @@ def _candidates(X: FloatArray) -> FloatArray:
     least, most = _LEAST, (len(X) - 1) / 1.25
     if most <= least:
         return np.zeros(0)
-    steps = int(np.ceil(10 * len(X) * np.log(most / least)))  # a tenth of a tick over the whole clip
+    finer = 10 if len(X) <= 64 else 4  # steps a tick, over the whole clip
+    steps = int(np.ceil(finer * len(X) * np.log(most / least)))
     periods = least * (most / least) ** (np.arange(steps + 1) / steps)
     periods = periods[_plausible(X, periods)]
     errors = phase_errors(X, periods, SAME_PHASE, False)
