@@ -139,7 +139,6 @@ class _Stream:
 
     def sketch(self, directions: FloatArray, known: FloatArray) -> FloatArray:
         """Return an orthonormal basis of ``Z^T Z directions``, orthogonal to what is known."""
-        directions = directions - known @ (known.T @ directions)
         W = np.zeros_like(directions)
         shift = self.mean
         total, count, moment = 0.0, 0, np.zeros(self.d)

@@ -142,8 +142,6 @@ def _onto(left: _State, right: _State, gap: float) -> GroundMotion:
     further = from_rotation_vector(0.5 * gap * (left.yaw_rate + right.yaw_rate) * UP)
     end = multiply(further, left.q)
     turn = swing_twist(multiply(end, conjugate(right.q)), UP)[1]
-    if np.dot(multiply(turn, right.q), left.q) < 0:
-        turn = -turn
     there = left.t + 0.5 * gap * (left.velocity + rotate(turn, right.velocity))
     return GroundMotion(turn, (there - rotate(turn, right.t)) * (1.0 - UP))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tempose._validate import as_floats
-from tempose.rotations import from_matrix, polar_rotation, to_matrix
+from tempose.rotations import from_matrix, polar_rotation
 from tempose.signals.blocks import block_slices, read_block
 from tempose.signals.placement.place import in_body
 from tempose.signals.placement.spline import continuous_signs
@@ -81,7 +81,7 @@ def fit_placements(
             if i + 1 < rounds:
                 total += in_body(Q, placements[frames]).sum(axis=0)
             progress(frames.stop, T, f"placement, round {i + 1} of {rounds}")
-        shape = _turned_to(P, total / T)
+        shape = total / T  # not turned against the shape before: no frame was, once aligned to it
     return continuous_signs(placements)
 
 
@@ -89,9 +89,3 @@ def _placements(P: FloatArray, Q: FloatArray) -> FloatArray:
     # the sum of P is zero, so that of Q may be anything: it need not be centred first
     R = polar_rotation(np.swapaxes(Q, -1, -2) @ P)
     return np.concatenate([from_matrix(R), Q.mean(axis=-2)], axis=-1)
-
-
-def _turned_to(P: FloatArray, mean: FloatArray) -> FloatArray:
-    # the mean shape must not creep away from the reference that says which rotation is none
-    turn = to_matrix(_placements(P, mean[None])[0, :4])
-    return mean @ turn
