@@ -184,7 +184,7 @@ def _measured(frames: ClipFrames, shape: FittedShape, f: TimeSignal, pose: Any) 
     space = shape.shape.space
     if isinstance(space, VertexSpace) or shape.turn is not None:
         return 0.0
-    which = checked_frames(len(shape.X))
+    which = checked_frames(len(shape.X), space.name)
     ticks = which.astype(np.float64)
     V = frames.block(which)
     measure = _decoded_percent(space, V, frames.diagonal)

@@ -14,7 +14,10 @@ from tempose.signals.shape.signal import ShapeSignal
 from tempose.typing import FloatArray, IntArray
 
 CHECKED = 24
-"""Frames decoded to see what a distance of the shape space means in vertices."""
+"""Frames decoded to see what a distance of the shape space means in vertices..."""
+
+CHECKED_SLOW = {"edge-dihedral": 6, "rotation-invariant": 12}
+"""...and in spaces where a mesh that is no frame takes long to decode."""
 
 _CERTAIN = 1e-5
 """Part of the largest singular value down to which the Gram matrix of the frames knows them well."""
@@ -91,7 +94,7 @@ def fit_shape(
     if check is None:
         chosen = _by_spread(pca, limit / unit) if m is None else pca.at_most(m)
     else:
-        chosen, scale = _by_decoding(pca, m, limit, check)
+        chosen, scale = _by_decoding(space, pca, m, limit, check)
     shape = ShapeSignal(space, pca.mean, pca.components(chosen))
     X, left_out = pca.coordinates(chosen), pca.left_out(chosen)
     return FittedShape(shape, X, None, left_out, pca.spread, scale)
@@ -103,11 +106,13 @@ def _by_spread(pca: GramPCA, limit: float) -> int:
     return int(np.argmax(np.sqrt(beyond) <= limit))
 
 
-def _by_decoding(pca: GramPCA, m: int | None, limit: float, check: Percent) -> tuple[int, float]:
+def _by_decoding(
+    space: ShapeSpace, pca: GramPCA, m: int | None, limit: float, check: Percent
+) -> tuple[int, float]:
     """Bisect for the least m whose decoded frames meet the limit; what a unit of the space is in percent."""
     X, H = pca.coordinates(pca.rank), pca.components(pca.rank)
     beyond = np.append(np.cumsum(np.square(pca.singular_values)[::-1])[::-1], 0.0)
-    frames = checked_frames(len(X))
+    frames = checked_frames(len(X), space.name)
     found: dict[int, float] = {}
 
     def percent(count: int) -> float:
@@ -170,7 +175,7 @@ def rescaled(fitted: FittedShape, check: Percent) -> FittedShape:
     FittedShape
         The same with its scale.
     """
-    frames, T = checked_frames(len(fitted.X)), len(fitted.X)
+    frames, T = checked_frames(len(fitted.X), fitted.shape.space.name), len(fitted.X)
     Z = fitted.X[frames] @ fitted.shape.components
     size, outside = float(np.square(Z).sum()), float(fitted.left_out[frames].sum())
     if outside < 1e-6 * size:  # the subspace holds the clip: look at a tenth less of its motion instead
@@ -179,17 +184,19 @@ def rescaled(fitted: FittedShape, check: Percent) -> FittedShape:
     return replace(fitted, scale=found / np.sqrt(outside * T / len(frames)) if outside > 0 else 0.0)
 
 
-def checked_frames(T: int) -> IntArray:
+def checked_frames(T: int, space: str = "gradient") -> IntArray:
     """Choose the frames whose decoded vertices are looked at.
 
     Parameters
     ----------
     T : int
         Frames of the clip.
+    space : str, optional
+        Name of the shape space: fewer where decoding is slow.
 
     Returns
     -------
     (c,) ndarray of int
         Evenly spread, both ends among them.
     """
-    return np.unique(np.linspace(0, T - 1, min(T, CHECKED)).round().astype(np.int64))
+    return np.unique(np.linspace(0, T - 1, min(T, CHECKED_SLOW.get(space, CHECKED))).round().astype(np.int64))
