@@ -14,7 +14,7 @@ from tempose.signals import Signals
 from tempose.signals.edits import blend, insert_curve, move_control, retime, set_speed
 from tempose.signals.placement import placement_at
 
-BASE = signals_of(swinging(40), k=42, l=30)
+BASE = signals_of(swinging(40), k=42, l=14)
 WALK = signals_of(bending(30, drift=1.5), placement=True)
 
 
@@ -67,7 +67,7 @@ def test_the_drawn_pose_is_shown() -> None:
     t = np.linspace(10, 26, 4001)
     nearest = t[np.linalg.norm(longer.time(t) - at, axis=1).argmin()]
     step = np.linalg.norm(np.diff(BASE.coordinates(BASE.times), axis=0), axis=1).mean()
-    assert np.linalg.norm(longer.coordinates_at(nearest) - BASE.pose(at)) < 0.2 * step
+    assert np.linalg.norm(longer.coordinates_at(nearest) - BASE.pose(at)) < 0.05 * step
 
 
 @pytest.mark.parametrize(("a", "b"), [(10, 25), (25, 10), (30, 39), (12, 0)])

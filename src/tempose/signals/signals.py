@@ -127,11 +127,23 @@ class Signals:
         if not moved.any():
             return x
         f, before, captured = f[moved], before[moved], captured[moved]
-        w = self._share_of_path(np.linalg.norm(f - before, axis=-1))[:, None]
+        w = self.share_of_path(np.linalg.norm(f - before, axis=-1))[:, None]
         x[moved] = self.pose(f, captured) + w * (x[moved] - self.pose(before, captured))
         return x
 
-    def _share_of_path(self, moved: FloatArray) -> FloatArray:
+    def share_of_path(self, moved: FloatArray) -> FloatArray:
+        """Return how much of what the path knows beyond g still applies at a place.
+
+        Parameters
+        ----------
+        moved : (...) float
+            How far it is from the place whose pose the path shows, in units of the pose plane.
+
+        Returns
+        -------
+        (...) ndarray
+            1 near it, 0 far away: see `FADE`.
+        """
         step = self.pose_step if self.fade_step is None else self.fade_step
         start, stop = FADE[0] * step, FADE[1] * step
         s = np.clip((moved - start) / max(stop - start, np.finfo(float).tiny), 0.0, 1.0)

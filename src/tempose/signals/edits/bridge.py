@@ -106,7 +106,7 @@ def _bridged(signals: Signals, a: float, b: float, points: FloatArray, frames: f
         signals,
         time=time,
         retimings=tuple(retimings),
-        path=_bridged_path(signals, time, gap),
+        path=_bridged_path(signals, gap, time if len(points) else None),
         placement=_bridged_placement(signals.placement, gap),
         origin=_bridged_origin(signals.origin, gap),
     )
@@ -126,21 +126,25 @@ def _bridged_curve(curve: Spline, gap: _Gap, points: FloatArray) -> Spline:
     return join_splines(curve, gap.a, middle_spline(u, before, after, points), curve, gap.b)
 
 
-def _bridged_path(signals: Signals, time: TimeSignal, gap: _Gap) -> Spline | None:
+def _bridged_path(signals: Signals, gap: _Gap, drawn: TimeSignal | None) -> Spline | None:
     if signals.path is None:
         return None
-    offsets = [
-        signals.path(t) - signals.pose(signals.time.before_edits(np.array(t)), _captured(signals, t))
-        for t in (gap.a, gap.b)
-    ]
-    captured = _captured(signals, gap.a), _captured(signals, gap.b)
+    if drawn is None:
+        # straight through the shapes: the poses of the plane between two far places are none of this motion
+        ends = signals.path(gap.a), signals.path(gap.b)
+        return _bridged_spline(signals.path, signals.path, gap, lambda t, s: (1 - s) * ends[0] + s * ends[1])
+    captured = [_captured(signals, t) for t in (gap.a, gap.b)]
+    ends = [signals.time.before_edits(np.array(t)) for t in (gap.a, gap.b)]
+    offsets = [signals.path(t) - signals.pose(p, c) for t, p, c in zip((gap.a, gap.b), ends, captured)]
 
     def values(t: FloatArray, s: FloatArray) -> FloatArray:
-        p = time.before_edits(t)
+        p = drawn.before_edits(t)
         # of a pose signal made of windows each end has its own; without windows both are the same
         x = (1 - s) * signals.pose(p, np.full(len(t), captured[0]))
         x = x + s * signals.pose(p, np.full(len(t), captured[1]))
-        return x + (1 - s) * offsets[0] + s * offsets[1]
+        # what the path knows beyond g belongs to the poses at the ends, not to those drawn far from them
+        near = [signals.share_of_path(np.linalg.norm(p - end, axis=1))[:, None] for end in ends]
+        return x + (1 - s) * near[0] * offsets[0] + s * near[1] * offsets[1]
 
     return _bridged_spline(signals.path, signals.path, gap, values)
 

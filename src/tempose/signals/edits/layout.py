@@ -117,7 +117,9 @@ def repair_transitions(signals: Signals) -> Signals:
 
 def _grid(signals: Signals) -> FloatArray:
     if not isinstance(signals.pose, PoseSignal):
-        raise ValueError("the clip was laid out in windows, each with a plane of its own; cut it first")
+        raise ValueError(
+            "the clip was laid out in windows, each a plane of its own; fit it with a larger window"
+        )
     first, last = signals.time.pace.domain
     return np.linspace(first, last, max(round(last - first), 1) + 1)
 
