@@ -43,7 +43,7 @@ def dirty() -> Mesh:
     """Degenerate in every way, a duplicated face, a turned one, a fin."""
     V, F = ball(1)
     n = len(V)
-    V = np.concatenate([V, [V[0] + 0.5 * (V[1] - V[0])], 1.4 * V[:1], V[:1]])
+    V = np.concatenate([V, [V[0] + 0.3 * (V[1] - V[0])], 1.4 * V[:1], V[:1]])
     added = [[3, 3, 4], [5, 5, 5], [0, n, 1], F[7], F[8][[1, 0, 2]], [F[9][0], F[9][1], n + 1], [0, n + 2, 2]]
     return V, np.concatenate([F, added])
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from gradient_meshes import ball, deformed, dirty, sheet
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.shape_spaces import GradientSpace, PatchSpace
+from tempose.shape_spaces.gradient.rest_faces import rest_faces
 
 SPACES = pytest.mark.parametrize("Space", [GradientSpace, PatchSpace])
 
@@ -55,6 +56,18 @@ def test_faces_without_a_shape_at_rest_are_named(rng) -> None:
     assert set(space.gradients.shape.flat) == {n, n + 1, n + 2, n + 6}
     assert_allclose(space.gradients.shape.shares.sum(), 1, rtol=1e-12)
     assert space.gradients.shape.shares.min() > 0
+
+
+@pytest.mark.parametrize("share", [0.2, 0.3, 1 / 3, 0.7])
+def test_faces_on_a_line_get_frames_like_all_others(share: float) -> None:
+    """Although rounding leaves them a normal of noise."""
+    V = np.array([[0.1, 0.2, 0.3], [0.7, 0.9, -0.2], [0, 0, 0], [1, 5, 2.0]])
+    V[2] = V[0] + share * (V[1] - V[0])
+    found = rest_faces(V, np.array([[0, 1, 2], [0, 1, 3]]))
+    axes = found.frames.transpose(2, 1, 0)
+    assert_array_equal(found.flat, [0])
+    assert_allclose(axes.swapaxes(1, 2) @ axes, np.broadcast_to(np.eye(3), axes.shape), atol=1e-12)
+    assert_allclose(np.linalg.det(axes), 1, rtol=1e-12)
 
 
 def test_a_nearly_flat_face_loses_no_accuracy(rng) -> None:
