@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -36,14 +37,22 @@ def swaying() -> MeshClip:
     return MeshClip(V.astype(np.float32), Mesh(V[0], mesh.faces), FPS)
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    tempose.save(folder / "clip.npz", swaying())
+    SignalModel().fit(tempose.load(folder / "clip.npz")).save(folder / "clip.tempose")
+    edits = {"operations": [{"op": "move", "control": 3, "by": [0.02, 0.01]}, {"op": "fps", "value": 12}]}
+    (folder / "edit.json").write_text(json.dumps(edits))
+    return folder
+
+
 @pytest.fixture
-def job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def job(tmp_path: Path, made: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a clip, a model of it and a list of edits."""
     monkeypatch.chdir(tmp_path)
-    tempose.save("clip.npz", swaying())
-    SignalModel().fit(tempose.load("clip.npz")).save("clip.tempose")
-    edits = {"operations": [{"op": "move", "control": 3, "by": [0.02, 0.01]}, {"op": "fps", "value": 12}]}
-    Path("edit.json").write_text(json.dumps(edits))
+    for path in made.iterdir():
+        shutil.copy(path, tmp_path)
     return tmp_path
 
 

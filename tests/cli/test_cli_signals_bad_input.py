@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -30,13 +31,21 @@ def clip_of(offsets: Any) -> MeshClip:
     return MeshClip(V.astype(np.float32), Mesh(V[0], mesh.faces), 24.0)
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    turn = np.linspace(0, 5, 8)
+    tempose.save(folder / "clip.npz", clip_of(np.column_stack([np.sin(turn), np.cos(2 * turn)])))
+    SignalModel().fit(tempose.load(folder / "clip.npz")).save(folder / "clip.tempose")
+    return folder
+
+
 @pytest.fixture
-def job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def job(tmp_path: Path, made: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a clip of 8 frames, a model of it, and an empty folder for outputs."""
     monkeypatch.chdir(tmp_path)
-    turn = np.linspace(0, 5, 8)
-    tempose.save("clip.npz", clip_of(np.column_stack([np.sin(turn), np.cos(2 * turn)])))
-    SignalModel().fit(tempose.load("clip.npz")).save("clip.tempose")
+    for path in made.iterdir():
+        shutil.copy(path, tmp_path)
     (tmp_path / "out").mkdir()
     return tmp_path
 
