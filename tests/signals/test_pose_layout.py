@@ -72,6 +72,13 @@ def test_points_of_a_plane_are_recovered(rng, unit):
     assert_allclose(align(found.positions, np.arange(40), Q), Q, atol=1e-5 * unit)
 
 
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+def test_alignment_undoes_a_turn_a_mirror_and_a_move(rng, mirror):
+    Q, c, s = rng.normal(size=(9, 2)), np.cos(0.7), np.sin(0.7)
+    P = Q @ np.array([[c, s], [-s, c]]) * [1.0, mirror] + [3.0, -2.0]
+    assert_allclose(align(P, np.array([1, 4, 8]), Q[[1, 4, 8]]), Q, atol=1e-12)
+
+
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
 def test_layout_scales_with_the_distances(rng, unit):
     D = distances(rng.normal(size=(25, 4)))

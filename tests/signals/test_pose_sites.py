@@ -117,6 +117,30 @@ def test_weights_count_as_repetition(clip):
     assert_allclose(again(P), fitted, atol=1e-9)
 
 
+def test_next_site_is_where_the_error_is_greatest_whatever_its_weight(clip):
+    P, X = clip
+    w = np.where(np.arange(30) % 3 == 0, 50.0, 1.0)
+    found = order_sites(P, X, w)
+    for l in range(4, 29):
+        off = np.linalg.norm(refit(P, X, P[found.order[:l]], w)[0] - X, axis=1)
+        off[found.order[:l]] = -1.0
+        assert off.argmax() == found.order[l]
+
+
+def test_frames_at_one_place_are_averaged_by_their_weights(clip):
+    P, X = clip
+    P, X = np.concatenate([P, P[[4]]]), np.concatenate([X, X[[4]] + 0.5])
+    w = np.ones(31)
+    w[30] = 3.0
+    assert_allclose(order_sites(P, X, w).signal()(P[4]), 0.25 * X[4] + 0.75 * X[30], atol=1e-9)
+
+
+def test_columns_are_orthogonal_however_close_the_sites(rng):
+    P = np.concatenate([rng.normal(size=(20, 2)), 1e-2 * rng.normal(size=(20, 2))])
+    Q = order_sites(P, rng.normal(size=(40, 3))).factors[0]
+    assert_allclose(Q @ Q.T, np.eye(len(Q)), atol=1e-14 * 40)
+
+
 def test_frames_at_one_place_are_one_site_and_leave_half_their_difference(clip):
     P, X = clip
     P, X = np.concatenate([P, P[[4]]]), np.concatenate([X, X[[4]] + 0.5])
