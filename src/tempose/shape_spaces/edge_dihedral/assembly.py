@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from tempose.shape_spaces.edge_dihedral.hinges import Hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
 from tempose.shape_spaces.edge_dihedral.positions import VertexPositions
-from tempose.shape_spaces.edge_dihedral.reference import Reference, hinge_stiffness
+from tempose.shape_spaces.edge_dihedral.reference import Reference
 from tempose.shape_spaces.edge_dihedral.triangles import lay_out
 from tempose.shape_spaces.edge_dihedral.turns import FaceTurns
+from tempose.shape_spaces.edge_dihedral.weights import hinge_stiffness
 from tempose.typing import FloatArray, IntArray
 
 

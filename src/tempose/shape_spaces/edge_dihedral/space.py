@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from tempose.shape_spaces.edge_dihedral.assembly import make_assembly
+from tempose.shape_spaces.edge_dihedral.decoded import Decoded
 from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_meshes, over_rows
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
@@ -19,6 +19,7 @@ from tempose.shape_spaces.edge_dihedral.reference import (
     make_reference,
 )
 from tempose.shape_spaces.edge_dihedral.refine import Refinement
+from tempose.shape_spaces.edge_dihedral.weights import edge_areas
 from tempose.typing import FloatArray, IntArray
 
 _BEND = 0.3
@@ -26,22 +27,6 @@ _SHORTEST = 1e-3
 _MISMATCH = 1e-6
 _NEAR = 0.02
 _TURN = 2 * np.pi
-
-
-@dataclass(frozen=True, eq=False)
-class Decoded:
-    """A mesh and how well it fits the coordinates it was made from."""
-
-    vertices: FloatArray
-    """(n, 3) metres."""
-    distance: float
-    """Distance of its own coordinates to those wanted, places left out; about the rms strain between them."""
-    mismatch: float
-    """Root mean square of the angles by which neighbouring faces disagree at first, radians."""
-    n_iter: int
-    """Gauss-Newton steps taken."""
-    converged: bool
-    """Whether the last step gained less than 1 %, or none was needed."""
 
 
 class EdgeDihedralSpace:

@@ -14,11 +14,11 @@ from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
 from tempose.shape_spaces.edge_dihedral.placement import Placement
 from tempose.shape_spaces.edge_dihedral.reference import (
     Reference,
-    edge_areas,
     make_reference,
     sample_poses,
 )
 from tempose.shape_spaces.edge_dihedral.triangles import lay_out
+from tempose.shape_spaces.edge_dihedral.weights import edge_areas
 from tempose.shape_spaces.rotation_invariant.angles import dihedrals_from_normals, views_of_normals
 from tempose.shape_spaces.rotation_invariant.fans import corner_fronts
 from tempose.shape_spaces.rotation_invariant.heights import heights_and_cosines
