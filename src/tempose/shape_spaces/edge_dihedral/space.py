@@ -13,11 +13,7 @@ from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_m
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
 from tempose.shape_spaces.edge_dihedral.placement import Placement
-from tempose.shape_spaces.edge_dihedral.reference import (
-    Reference,
-    edge_areas,
-    make_reference,
-)
+from tempose.shape_spaces.edge_dihedral.reference import Reference, make_reference
 from tempose.shape_spaces.edge_dihedral.refine import Refinement
 from tempose.shape_spaces.edge_dihedral.weights import edge_areas
 from tempose.typing import FloatArray, IntArray
