@@ -134,6 +134,16 @@ def test_a_held_pose_stays_held():
     assert_allclose(seen(longer)[26:], seen(s)[22:], atol=1e-10 * size(s))
 
 
+def test_a_hold_between_what_comes_before_and_after_it_lasts_as_long_as_is_asked():
+    s = replace(plain(), retimings=(monotone_map([0.0, 10, 20, 41], [0.0, 10, 10, 31]),))
+    spliced = splice(s, frames_as_pieces(s, [(0, 11), (13, 16), (19, 41)]))
+    x = seen(s)
+    assert spliced.n_frames == 37
+    assert_allclose(seen(spliced), np.concatenate([x[:11], x[[10] * 5], x[21:42]]), atol=1e-10 * size(s))
+    only = splice(s, frames_as_pieces(s, [(13, 16), (19, 41)]))
+    assert_allclose(seen(only), np.concatenate([x[[10] * 5], x[21:42]]), atol=1e-10 * size(s))
+
+
 def test_a_held_pose_put_before_another_one_is_left_smoothly():
     s = replace(plain(), retimings=(monotone_map([0.0, 10, 20, 41], [0.0, 10, 10, 31]),))
     spliced = splice(s, [(12 / FPS, 18 / FPS), (0, 8 / FPS)])
