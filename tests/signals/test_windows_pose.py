@@ -7,11 +7,20 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.distance import cdist
 
+from tempose.signals.pose.densified import densified_pose_signal
 from tempose.signals.pose.judge import curve_through
 from tempose.signals.pose.layout import PoseLayout
 from tempose.signals.pose.sites import order_sites
 from tempose.signals.pose.transitions import find_bad_transitions
-from tempose.signals.windows import WindowedFit, WindowedPose, cover, fit_windowed_pose, fit_windows
+from tempose.signals.time.path import time_path
+from tempose.signals.windows import (
+    WindowedFit,
+    WindowedPose,
+    cover,
+    fit_dense_windows,
+    fit_windowed_pose,
+    fit_windows,
+)
 from tempose.typing import FloatArray
 
 
@@ -145,3 +154,20 @@ def test_no_transition_strays_where_the_number_of_sites_is_free() -> None:
     assert before.bad.sum() > 5 and after.bad.sum() == 0
     assert len(plain.middles) == 0 and len(free.middles) >= 3 * 5
     assert free.errors.max() < 1e-10
+
+
+def test_dense_windows_follow_the_smooth_motion_between_frames() -> None:
+    X = pacing(150)
+    fit = fit_windows(X, 60, 20)
+    f, path = curve_through(fit.positions), time_path(X, None)
+    dense = fit_dense_windows(f, X, fit.pose.cover)
+    t = np.arange(0, 149.01, 0.25)
+    at_frames = fit_windowed_pose(fit.positions, X, fit.pose.cover)
+    step = np.linalg.norm(np.diff(X, axis=0), axis=1).mean()
+    stray, before = (np.linalg.norm(g(f(t), t) - path(t), axis=1) / step for g in (dense, at_frames))
+    # places where the curve crosses itself stay: there one surface cannot follow both ways
+    assert np.median(stray) < 0.01 < 3 * np.median(before) and np.percentile(stray, 90) < 0.1
+    one = cover(50, 60, 20)
+    alone = fit_dense_windows(curve_through(fit.positions[:50]), X[:50], one)
+    plain = densified_pose_signal(fit.positions[:50], X[:50], curve_through(fit.positions[:50]))
+    assert_allclose(alone(f(t[:160]), t[:160]), plain(f(t[:160])), atol=1e-9)

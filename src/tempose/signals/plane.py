@@ -21,7 +21,7 @@ from tempose.signals.pose import (
 from tempose.signals.pose.choose import pose_distances
 from tempose.signals.time.fit import fit_time_signal
 from tempose.signals.time.signal import TimeSignal
-from tempose.signals.windows import WindowedPose, fit_windows
+from tempose.signals.windows import WindowedPose, fit_dense_windows, fit_windows
 from tempose.typing import FloatArray, IntArray
 
 POOR_STRESS = 0.35
@@ -201,7 +201,7 @@ def fit_time(
         if k is None:
             k, _ = choose_controls(error, len(X), goal.total, notes.progress)
         f = fit_time_signal(plane.positions, k)
-        pose = _dense(f, X, options) if options.between == "dense" else _refitted(plane, f, X)
+        pose = _dense(plane, f, X, options) if options.between == "dense" else _refitted(plane, f, X)
     miss = float(np.sqrt(np.square(f(ticks) - plane.positions).sum(axis=1).mean()))
     radius = float(np.sqrt(np.square(plane.positions - plane.positions.mean(axis=0)).sum(axis=1).mean()))
     if miss > ASTRAY * radius:
@@ -225,7 +225,9 @@ def _refitted(plane: Plane, f: TimeSignal, X: FloatArray) -> PoseSignal | Window
     return again if better else pose
 
 
-def _dense(f: TimeSignal, X: FloatArray, options: FitOptions) -> PoseSignal:
+def _dense(plane: Plane, f: TimeSignal, X: FloatArray, options: FitOptions) -> PoseSignal | WindowedPose:
+    if isinstance(plane.pose, WindowedPose):
+        return fit_dense_windows(f, X, plane.pose.cover, options.l)
     return densified_order(f(np.arange(float(len(X)))), X, f, most=options.l).signal()
 
 

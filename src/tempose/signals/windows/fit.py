@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from tempose._validate import as_floats
 from tempose.signals.fidelity import choose_sites
+from tempose.signals.pose.densified import densified_order
 from tempose.signals.pose.judge import curve_through
 from tempose.signals.pose.pins import Pins
 from tempose.signals.pose.signal import PoseSignal
@@ -138,6 +140,41 @@ def fit_windowed_pose(
         number = None if sites is None else min(sites, n_frames)
         signals.append(_fit_one(P[frames], X[frames], number, limit * n_frames))
         progress(i + 1, len(windows), "pose signal")
+    return WindowedPose(tuple(signals), windows)
+
+
+def fit_dense_windows(
+    time: Callable[[FloatArray], FloatArray], X: FloatArray, windows: Cover, most: int | None = None
+) -> WindowedPose:
+    """Fit each window to the smooth motion at quarter frames, along a curve.
+
+    Parameters
+    ----------
+    time : callable
+        The time signal f: ticks to places.
+    X : (T, m) float
+        Shape coordinates of the frames.
+    windows : Cover
+        The windows.
+    most : int, optional
+        Sites of a window at most; three times its frames if left out.
+
+    Returns
+    -------
+    WindowedPose
+        The pose signal.
+    """
+    path = time_path(X, None)
+    signals: list[PoseSignal] = []
+    for i in range(len(windows)):
+        frames = windows.frames(i)
+        ticks = np.arange(frames.start, frames.stop, dtype=np.float64)
+
+        def here(ticks: FloatArray, start: int = frames.start) -> FloatArray:
+            return time(ticks + start)
+
+        order = densified_order(time(ticks), X[frames], here, most=most, path=path.shifted(-frames.start))
+        signals.append(order.signal())
     return WindowedPose(tuple(signals), windows)
 
 
