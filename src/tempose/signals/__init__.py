@@ -1,6 +1,6 @@
 """A clip as a continuous function of time: signals of time, pose and shape.
 
-`SignalModel` fits a clip; edits are functions from signals to signals.
+`SignalModel` fits a clip, as in [1]_; edits are functions from signals to signals.
 
 References
 ----------
