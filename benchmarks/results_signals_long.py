@@ -105,9 +105,9 @@ def report(rows: list[dict[str, Any]]) -> list[str]:
         "",
         *table(COLUMNS, cells),
         "",
-        "Layouts of long clips: repeats are frames a third of the clip apart or more whose poses are less than "
-        "a step apart; distances in the plane are medians. Windows of 300 frames (crane 60), overlap a fifth. "
-        "Bad transitions with g fitted to the frames alone.",
+        "Layouts of long clips: repeats are frames a third of the clip apart or more whose poses are less "
+        "than a step apart; distances in the plane are medians. Windows of 300 frames (crane 60), overlap a "
+        "fifth. Bad transitions with g fitted to the frames alone.",
         "",
         *layouts(),
         "",
