@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.curves import Seam, Spline, interpolating_spline, join_splines, slice_spline, splice_spline
+from tempose.curves.bridge import bridge
 from tempose.curves.offsets import damped_offset, window
-from tempose.curves.splicing import REACH, bridge
+from tempose.curves.splicing import REACH
 
 
 def some_curve(n: int = 60, unit: float = 1.0) -> Spline:
