@@ -23,7 +23,7 @@ def test_the_tolerance_is_met_by_the_literal_representation(tolerance: float, sp
 
 @pytest.mark.parametrize("space", ["patch", "edge-dihedral", "rotation-invariant"])
 def test_so_it_is_in_the_other_spaces(space: str) -> None:
-    report = SignalModel(space, tolerance=1.0).fit(swinging()).report_
+    report = SignalModel(space, tolerance=1.0).fit(swinging(16)).report_
     assert 0.2 < report["paper"]["rms_percent"] <= 1.05
     assert report["errors"]["rms_percent"] <= 1.0
 
