@@ -17,9 +17,11 @@ from tempose.shape_spaces import EdgeDihedralSpace
 from tempose.shape_spaces.edge_dihedral.derivatives import NormalEquations
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals, normals
+from tempose.shape_spaces.edge_dihedral.parts import steady_weights
 from tempose.shape_spaces.edge_dihedral.positions import VertexPositions
 from tempose.shape_spaces.edge_dihedral.triangles import areas_from_lengths, lay_out
 from tempose.shape_spaces.edge_dihedral.turns import FaceTurns
+from tempose.shape_spaces.edge_dihedral.weights import hinge_stiffness
 
 
 def measured(V: np.ndarray, F: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -369,3 +371,60 @@ def test_real_meshes_come_back(clip: str, data_folder) -> None:
     frames = np.asarray(loaded.vertices[:: max(1, len(loaded.vertices) // 8)], dtype=np.float64)
     space = EdgeDihedralSpace.from_clip(frames[0], loaded.faces, frames[:4])
     assert np.abs(space.decode(space.encode(frames)) - frames).max() < 1e-9 * diagonal(frames)
+
+
+def test_single_folds_lie_near_those_of_the_clip() -> None:
+    """A fold that swings about half a turn is not cut there."""
+    frames = np.stack([folded(a) for a in np.linspace(2.5, 3.7, 7)])
+    space = EdgeDihedralSpace.from_clip(frames[0], FOLD, frames)
+    angles = [numbers(space, space.encode(X))[1][0] for X in frames]
+    assert_allclose(np.diff(angles), 0.2, atol=1e-9)
+
+
+def test_the_frame_of_a_body_follows_what_moves_rigidly() -> None:
+    """A ball turns slowly while an arm on it swings: the ball's own turn is found."""
+    V, F = closed(2)
+    is_arm = V[:, 1] > 0.8
+    frames = []
+    for t in np.linspace(-1, 1, 9):
+        X = V.copy()
+        X[is_arm] = (X[is_arm] - [0, 0.8, 0]) @ Rotation.from_rotvec([1.5 * t, 0, 0]).as_matrix().T + [
+            0,
+            0.8,
+            0,
+        ]
+        frames.append(X @ Rotation.from_rotvec([0, 0.2 * t, 0]).as_matrix().T)
+    weights = steady_weights(V, F, np.stack(frames))
+    plain = steady_weights(V, F, V[None])
+    assert_allclose([weights.sum(), plain.sum()], 1)
+    assert weights[is_arm].sum() < 0.1 * plain[is_arm].sum()
+
+
+def test_hinges_that_flip_to_and_fro_count_little() -> None:
+    frames = np.stack([folded(a) for a in (-1.5, 1.5, -1.4, 1.4)])
+    still = EdgeDihedralSpace.from_clip(frames[0], FOLD)
+    swinging = EdgeDihedralSpace.from_clip(frames[0], FOLD, frames)
+    spread = swinging.reference.spread[0]
+    assert_allclose(spread, -2 * np.log(np.abs(np.exp(1j * np.array([1.5, 1.4])).real.mean())), rtol=1e-9)
+    ratio = hinge_stiffness(still.hinges, still.reference) / hinge_stiffness(
+        swinging.hinges, swinging.reference
+    )
+    assert_allclose(ratio, (0.02 + spread) / 0.02, rtol=1e-9)
+
+
+def test_a_second_start_may_end_lower() -> None:
+    V, F = closed(2)
+    space = EdgeDihedralSpace.from_clip(V, F)
+    turns, gains = space.assembly.turns, []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        lengths, angles = numbers(space, space.encode(V))
+        angles = angles + 0.8 * rng.standard_normal(len(angles))
+        directions, _ = lay_out(lengths[space.hinges.face_edges])
+        both = turns.rotations(directions, angles)[1]
+        rest, turns.at_rest = turns.at_rest, None
+        alone = turns.rotations(directions, angles)[1]
+        turns.at_rest = rest
+        gains.append(alone - both)
+    assert min(gains) >= 0
+    assert max(gains) > 0
