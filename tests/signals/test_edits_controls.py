@@ -13,6 +13,7 @@ from model_clips import swinging
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.formats import load_clip
+from tempose.samples import sample_clip
 from tempose.signals import Signals
 from tempose.signals.edits import insert_control, loop, move_control, place_control, retime, set_speed
 
@@ -106,6 +107,17 @@ def test_a_step_that_is_no_pair_is_refused(by: object) -> None:
 def test_a_frame_that_does_not_exist_is_refused(at: float) -> None:
     with pytest.raises(ValueError, match="at must be a frame from 0 to 19"):
         insert_control(base("vertex"), at)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("space", ["vertex", "gradient"])
+def test_a_walking_sample_changes_only_under_the_support(space: str) -> None:
+    signals = signals_of(sample_clip("human", "walk", triangles=4000, fps=12), space, k=14, l=14)
+    for edited in (signals, set_speed(signals, 3, 9, 0.5), loop(signals, 2, 10, 2)):
+        moved, before = played(move_control(edited, 7, [0.5, 0.3])), played(edited)
+        touched = reach(edited, 7)
+        assert_array_equal(moved[~touched], before[~touched])
+        assert touched.any() and not touched.all() and (moved[touched] != before[touched]).any()
 
 
 @pytest.mark.real

@@ -81,26 +81,26 @@ def test_a_ridge_pulls_towards_the_first_pose() -> None:
     assert damped.condition < plain.condition
 
 
-def two_limbs(N: int, seed: int) -> tuple[FloatArray, FloatArray]:
-    """Two regions that move independently, in other coordinates and another order in the target."""
+def three_limbs(N: int, seed: int) -> tuple[FloatArray, FloatArray]:
+    """Three regions that move independently, in other coordinates and another order in the target."""
     rng = np.random.default_rng(seed)
-    a, b = rng.normal(size=(N, 3)), rng.normal(size=(N, 3))
+    a, b, c = rng.normal(size=(3, N, 3))
     turn = np.linalg.qr(rng.normal(size=(5, 5)))[0][:, :3]
-    source = np.stack([x @ x.T for x in (a, b)])
-    target = np.stack([(x @ turn.T) @ (x @ turn.T).T for x in (b, a)])
+    source = np.stack([x @ x.T for x in (a, b, c)])
+    target = np.stack([(x @ turn.T) @ (x @ turn.T).T for x in (b, c, a)])
     return source, target
 
 
 def test_regions_that_move_alike_are_found_and_predict_pairs_left_out() -> None:
-    source, target = two_limbs(8, 0)
+    source, target = three_limbs(8, 0)
     found = fit_local_map(source, target)
     assert found.sharpness > 0
-    assert (found.weights.argmax(axis=1) == [1, 0]).all()
+    assert (found.weights.argmax(axis=1) == [1, 2, 0]).all()
     assert found.error < 0.5 * found.plain
 
 
 def test_multiples_sum_to_one_and_give_poses_back() -> None:
-    source, target = two_limbs(8, 1)
+    source, target = three_limbs(8, 1)
     found = fit_local_map(source, target)
     a = found.multiples(source)
     assert_allclose(a.sum(axis=2), 1.0, atol=1e-9)
