@@ -229,3 +229,5 @@ def test_lines_are_cut_at_the_edge() -> None:
     assert_allclose(parts, [[[0, 5], [5, 5]], [[5, 5], [5, 10]], [[5, 0], [5, 5]]])
     (through,) = clipped(np.array([[-10, -10], [20, 20.0]]), box)
     assert_allclose(through, [[0, 0], [10, 10]])
+    (out,) = clipped(np.array([[5, 4], [20, 16.0]]), box)
+    assert_allclose(out, [[5, 4], [10, 8]])
