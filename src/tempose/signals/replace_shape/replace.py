@@ -17,6 +17,7 @@ from tempose.signals.pose.fit import fit_pose_signal
 from tempose.signals.pose.signal import PoseSignal
 from tempose.signals.replace_shape.local import LocalMap, fit_local_map
 from tempose.signals.replace_shape.mixtures import Mixtures, best_mixtures
+from tempose.signals.replace_shape.notes import transfer_notes
 from tempose.signals.replace_shape.poses import PoseSet, as_poses
 from tempose.signals.replace_shape.reading import PoseReader, Reading
 from tempose.signals.replace_shape.regions import regions_of
@@ -26,9 +27,6 @@ from tempose.signals.shape.signal import ShapeSignal
 from tempose.signals.signals import Signals
 from tempose.signals.windows.pose import WindowedPose
 from tempose.typing import FloatArray
-
-ILL_CONDITIONED = 1e8
-"""Beyond this some poses are nearly mixtures of others, and multiples of them grow without meaning."""
 
 REGIONS = 60
 """Regions of a mesh where the user names no number: a body's limbs get a few each."""
@@ -138,7 +136,7 @@ def replace_shape(
         placement=placement_spline(placements, ticks),
         mesh=r.mesh,
     )
-    return ShapeTransfer(new, mixtures, local, _warnings(mixtures, local, q, r, scale))
+    return ShapeTransfer(new, mixtures, local, transfer_notes(mixtures, local, q, r, scale))
 
 
 def _as_a_whole(
@@ -231,28 +229,3 @@ def _windows(pose: Any) -> tuple[PoseSignal, ...]:
 def _replaced_pose(pose: Any, X: list[FloatArray]) -> Any:
     fitted = tuple(fit_pose_signal(g.sites, x, g.sites) for g, x in zip(_windows(pose), X))
     return replace(pose, windows=fitted) if isinstance(pose, WindowedPose) else fitted[0]
-
-
-def _warnings(
-    mixtures: Mixtures, local: LocalMap | None, q: PoseSet, r: PoseSet, scale: float | str
-) -> tuple[str, ...]:
-    found = [
-        f"{len(mixtures.used)} of {len(q)} pairs used ({', '.join(map(str, mixtures.used))}); their mixtures "
-        f"leave {mixtures.residual:.2f} of the motion's spread (rms) that they cannot show"
-    ]
-    if local is not None:
-        found.append(
-            f"of a pair's distance to the mean of the others, which predict it, {local.error:.2f} is left "
-            f"by regions, {local.plain:.2f} as a whole"
-        )
-    if mixtures.condition > ILL_CONDITIONED:
-        found.append(
-            f"the poses are nearly mixtures of one another (condition {mixtures.condition:.1e}): leave one "
-            "out or give a ridge such as 0.001"
-        )
-    ratio = r.mesh.diagonal / q.mesh.diagonal
-    if scale == 1 and not 2 / 3 < ratio < 1.5:
-        found.append(
-            f'the target is {ratio:.3g} times as large and travels as far; "scale": "size" changes that'
-        )
-    return tuple(found)
