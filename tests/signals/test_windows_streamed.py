@@ -12,7 +12,12 @@ from tempose.shape_spaces import SPACES
 from tempose.signals import SignalModel
 from tempose.signals.frames import FOLLOWING, ClipFrames
 from tempose.signals.placement import place
-from tempose.signals.shape.streamed import encoded_blocks, first_coordinates, streamed_space
+from tempose.signals.shape.streamed import (
+    encoded_blocks,
+    first_coordinates,
+    fit_streamed_shape,
+    streamed_space,
+)
 from tempose.typing import FloatArray
 
 SIDE = 8
@@ -78,3 +83,14 @@ def test_a_space_that_cannot_go_on_refuses_a_clip_that_is_too_large(monkeypatch:
     for space in set(SPACES) - set(FOLLOWING):
         with pytest.raises(ValueError, match=r"too large for the space.*choose vertex, gradient or patch"):
             SignalModel(space=space).fit(flag(20))
+
+
+@pytest.mark.parametrize("space", FOLLOWING)
+def test_what_is_left_out_of_each_frame_is_told(space: str) -> None:
+    frames = ClipFrames.of(flag(50), True)
+    made = streamed_space(space, frames)
+    found = fit_streamed_shape(made, frames, None, 1.0)
+    Z = made.encode_path(frames.block(slice(None)))
+    off = Z - found.shape.mean - found.X @ found.shape.components
+    assert 0 < found.X.shape[1] < 20
+    assert_allclose(found.left_out, np.square(off).sum(axis=1), rtol=1e-6, atol=1e-10)
