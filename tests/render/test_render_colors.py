@@ -37,7 +37,7 @@ def test_colours_of_any_form_agree():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: ramp_colors([1], 0, 1, "rainbow"), "ramp must be one of heat, time, signed"),
+        (lambda: ramp_colors([1], 0, 1, "rainbow"), "ramp must be one of heat, time, time-dark, signed"),
         (lambda: ramp_colors([1], 1, 1), "from low to high"),
         (lambda: ramp_colors([1], 0, np.inf), "from low to high"),
         (lambda: rgb("#12345"), "'#rrggbb'"),

@@ -17,7 +17,7 @@ Picture: TypeAlias = npt.NDArray[np.uint8]
 RAMPS = {
     "heat": ("#7a8aa8", "#8c74b4", "#c066a6", "#ee7480", "#ffd6c9"),
     "time": ("#3f46b8", "#1f77a8", "#12806a", "#4f8a12", "#a17a00"),
-    "time, on dark": ("#7d8bf2", "#4aa8da", "#3fc4a8", "#a4dc5e", "#f2e650"),
+    "time-dark": ("#7d8bf2", "#4aa8da", "#3fc4a8", "#a4dc5e", "#f2e650"),
     "signed": ("#2f6fc4", "#8fb3dc", "#c9ccd1", "#e2a489", "#c04a30"),
 }
 """Ramps of colour: errors and uncertainty, time, and values on both sides of zero."""

@@ -93,7 +93,7 @@ def time_colors(seconds: FloatArray, duration: float, tone: Theme) -> FloatArray
     (s, 3) ndarray
         sRGB, 0 to 1.
     """
-    ramp = "time, on dark" if tone.name == "dark" else "time"
+    ramp = "time-dark" if tone.name == "dark" else "time"
     return ramp_colors(seconds, 0.0, max(duration, 1e-9), ramp)
 
 
