@@ -11,7 +11,7 @@ from model_clips import clip_of, swinging
 from numpy.testing import assert_allclose
 
 from tempose.signals import SignalModel
-from tempose.signals.sampling import BLOCK_VALUES
+from tempose.signals.blocks import BLOCK_VALUES
 
 
 @pytest.fixture(scope="module")

@@ -68,8 +68,7 @@ def test_placement_split_off_leaves_few_modes(model: SignalModel) -> None:
 def test_fitting_and_playing_take_a_part_of_the_clip_in_memory(
     clip: MeshClip, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    for module in ("blocks", "sampling"):
-        monkeypatch.setattr(f"tempose.signals.{module}.BLOCK_VALUES", 20_000)
+    monkeypatch.setattr("tempose.signals.blocks.BLOCK_VALUES", 20_000)
     out = np.lib.format.open_memmap(tmp_path / "back.npy", "w+", np.float32, clip.vertices.shape)
     model = SignalModel(m=4, l=30, k=300, placement=True, window=100)
     model.fit(clip)  # so that nothing is loaded or compiled below

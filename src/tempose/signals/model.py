@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -244,7 +244,7 @@ class SignalModel:
             return signals.times
         if not 0 < fps < float("inf"):
             raise ValueError(f"fps must be positive, got {fps}")
-        return np.arange(int(np.floor(signals.duration * fps + 1e-6)) + 1) / fps
+        return replace(signals, fps=float(fps)).times
 
     def clip(self, fps: float | None = None, times: FloatArray | None = None, *, out: Any = None) -> MeshClip:
         """Play the model into a clip.

@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 
 from tempose._validate import as_floats
+from tempose.signals.blocks import block_slices
 from tempose.signals.placement import placed
 from tempose.signals.room import check_room
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
-
-BLOCK_VALUES = 2_000_000
-"""Numbers of one block: 8 MB of vertices in single precision."""
 
 
 def sample_blocks(
@@ -45,7 +43,7 @@ def sample_blocks(
         If a time is not finite.
     """
     times = as_floats(times, "times", ("K",))
-    for where in _blocks(signals, len(times)):
+    for where in block_slices(len(times), signals.shape.space.dimension):
         yield where, evaluate(signals, times[where], dtype)
 
 
@@ -72,12 +70,6 @@ def evaluate(
     """
     V = signals.shape.vertices(signals.coordinates(times), dtype, out)
     return placed(V, signals.placement, signals.ticks(times), V)
-
-
-def _blocks(signals: Signals, count: int) -> Iterator[slice]:
-    step = max(1, BLOCK_VALUES // max(signals.shape.space.dimension, 1))
-    for start in range(0, count, step):
-        yield slice(start, min(start + step, count))
 
 
 def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np.float32) -> FloatArray:
@@ -123,6 +115,6 @@ def sample(signals: Signals, times: FloatArray, out: Any = None, dtype: Any = np
         raise ValueError(f"out must have shape (K, {shape[-2]}, 3) for K times, got {out.shape}")
     else:
         rows = out
-    for where in _blocks(signals, len(flat)):
+    for where in block_slices(len(flat), signals.shape.space.dimension):
         evaluate(signals, flat[where], out=rows[where])
     return rows.reshape(shape) if out is None else out
