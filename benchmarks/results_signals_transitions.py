@@ -28,7 +28,7 @@ from tempose.signals import Signals
 from tempose.signals.pictures import draw_pose_plane
 from tempose.signals.pose import choose_layout, densified_pose_signal, find_bad_transitions, order_sites
 from tempose.signals.pose.choose import LayoutChoice
-from tempose.signals.pose.judge import curve_through
+from tempose.signals.pose.middles import curve_through
 from tempose.signals.shape.signal import ShapeSignal
 
 COLUMNS = (

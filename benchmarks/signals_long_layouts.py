@@ -17,7 +17,7 @@ from tempose.linalg.pca import GramPCA
 from tempose.linalg.streamed_pca import streamed_pca
 from tempose.signals.placement import split_placement
 from tempose.signals.pose import PoseLayout, find_bad_transitions
-from tempose.signals.pose.layout import align
+from tempose.signals.pose.layout import congruence
 from tempose.signals.time.fit import fit_time_signal
 from tempose.signals.windows import Cover, cover, fit_windowed_pose, long_layout
 from tempose.typing import FloatArray
@@ -33,7 +33,8 @@ def in_windows(X: FloatArray, windows: Cover) -> FloatArray:
         frames = np.arange(len(X))[windows.frames(i)]
         shared = frames[: windows.frames(i - 1).stop - frames[0]] if i else frames[:0]
         here = PoseLayout(cdist(X[frames], X[frames])).solve().positions
-        here = align(here, np.arange(len(shared)), P[shared])
+        if i:
+            here = congruence(here[: len(shared)], P[shared])(here)
         w = windows(shared.astype(float))[1][:, None]
         here[: len(shared)] = (1 - w) * P[shared] + w * here[: len(shared)]
         P[frames] = here

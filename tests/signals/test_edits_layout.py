@@ -14,7 +14,6 @@ from tempose.signals import Signals
 from tempose.signals.edits import (
     insert_curve,
     move_control,
-    pin_frame,
     pin_frames,
     repair_transitions,
     set_speed,
@@ -32,7 +31,7 @@ def place(signals: Signals, frame: float) -> np.ndarray:
 @given(st.integers(0, 29), st.floats(-1, 1), st.floats(-1, 1))
 def test_a_pinned_frame_lies_where_it_was_pinned(frame: int, x: float, y: float) -> None:
     at = np.array([x, y])
-    pinned = pin_frame(BASE, frame, at)
+    pinned = pin_frames(BASE, {frame: at})
     assert_allclose(place(pinned, frame), at, atol=1e-12)
     assert_array_equal(played(pinned), played(BASE))
 
@@ -49,14 +48,14 @@ def test_several_pins_hold_together_with_any_number_of_controls(k: int) -> None:
 
 def test_the_others_are_laid_out_round_a_pinned_frame() -> None:
     """Distances in the plane stay those of the poses as well as they can."""
-    pinned = pin_frame(BASE, 12, place(BASE, 12) + 0.3)
+    pinned = pin_frames(BASE, {12: place(BASE, 12) + 0.3})
     moved = pinned.time(np.arange(30.0)) - BASE.time(np.arange(30.0))
     assert_allclose(moved, 0.3, atol=0.05)
 
 
 def test_frames_of_edited_and_retimed_clips_are_kept() -> None:
     edited = move_control(set_speed(BASE, 5, 15, 0.5), 12, [0.1, 0.05])
-    pinned = pin_frame(edited, 14, [0.2, 0.2])
+    pinned = pin_frames(edited, {14: [0.2, 0.2]})
     assert_allclose(place(pinned, 14), [0.2, 0.2], atol=1e-9)
     step = np.linalg.norm(np.diff(edited.coordinates(edited.times), axis=0), axis=1).mean()
     off = np.linalg.norm(pinned.coordinates(edited.times) - edited.coordinates(edited.times), axis=1)
@@ -64,7 +63,7 @@ def test_frames_of_edited_and_retimed_clips_are_kept() -> None:
 
 
 def test_a_pinned_clip_can_still_be_edited_locally() -> None:
-    pinned = pin_frame(BASE, 14, [0.2, 0.2])
+    pinned = pin_frames(BASE, {14: [0.2, 0.2]})
     moved = move_control(pinned, 16, [0.1, 0.0])
     same = (played(moved) == played(pinned)).all(axis=(1, 2))
     assert same[:13].all() and same[18:].all() and not same.all()
@@ -72,9 +71,9 @@ def test_a_pinned_clip_can_still_be_edited_locally() -> None:
 
 def test_a_pin_beyond_the_clip_is_refused() -> None:
     with pytest.raises(ValueError, match="frame must be a frame from 0 to 29, got 30"):
-        pin_frame(BASE, 30, [0, 0])
+        pin_frames(BASE, {30: [0, 0]})
     with pytest.raises(ValueError, match="at must"):
-        pin_frame(BASE, 3, [0, 0, 0])
+        pin_frames(BASE, {3: [0, 0, 0]})
 
 
 def bad(signals: Signals) -> int:
@@ -107,6 +106,6 @@ def test_a_clip_without_bad_transitions_is_left_alone() -> None:
 
 def test_layouts_of_clips_with_drawn_loops() -> None:
     longer = insert_curve(BASE, 10, [place(BASE, 20)], 7.5)
-    pinned = pin_frame(longer, 30, [0.1, 0.1])
+    pinned = pin_frames(longer, {30: [0.1, 0.1]})
     assert_allclose(place(pinned, 30), [0.1, 0.1], atol=1e-9)
     assert_allclose(played(pinned), played(longer), atol=1e-6)

@@ -20,8 +20,9 @@ from tempose.signals.pose import (
 from tempose.signals.pose.choose import pose_distances
 from tempose.signals.pose.crossings import find_crossings
 from tempose.signals.pose.fit import interpolating_pose_signal
-from tempose.signals.pose.judge import aspect_ratio, curve_through
+from tempose.signals.pose.judge import aspect_ratio
 from tempose.signals.pose.layout import stress_of
+from tempose.signals.pose.middles import curve_through
 from tempose.signals.pose.smoothing import _curve_matrix, _Smoothing, smooth_transitions
 from tempose.signals.pose.time_graph import time_graph_distances
 

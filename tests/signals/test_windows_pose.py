@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.distance import cdist
 
 from tempose.signals.pose.densified import densified_pose_signal
-from tempose.signals.pose.judge import curve_through
 from tempose.signals.pose.layout import PoseLayout
+from tempose.signals.pose.middles import curve_through
 from tempose.signals.pose.sites import order_sites
 from tempose.signals.pose.transitions import find_bad_transitions
 from tempose.signals.time.path import time_path

@@ -19,6 +19,7 @@ from tempose.signals.pose import (
     order_sites,
 )
 from tempose.signals.pose.choose import pose_distances
+from tempose.signals.pose.middles import with_middles
 from tempose.signals.time.fit import fit_time_signal
 from tempose.signals.time.signal import TimeSignal
 from tempose.signals.windows import WindowedPose, fit_dense_windows, fit_windows
@@ -88,8 +89,7 @@ def fit_plane(
     with notes.stage("layout"):
         P, middles = _laid_out(X, options, pins, notes)
     with notes.stage("pose"):
-        samples = (P, X) if len(middles) == 0 else _with_middles(P, X, middles)
-        order = order_sites(*samples, most=options.l)
+        order = order_sites(*with_middles(P, X, middles), most=options.l)
         l = options.l
         if l is None:
             l = choose_sites(order.errors, goal.base, POSE_SHARE**2 * goal.total)
@@ -138,13 +138,6 @@ def _note_layout(notes: Notes, name: str, stress: float, warnings: tuple[str, ..
         notes.warnings.append(
             f"doubtful layout: distances in the pose plane miss those between poses by {100 * stress:.0f} %"
         )
-
-
-def _with_middles(P: FloatArray, X: FloatArray, middles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    from tempose.signals.pose.judge import curve_through
-    from tempose.signals.time.path import time_path
-
-    return np.concatenate([P, curve_through(P)(middles)]), np.concatenate([X, time_path(X)(middles)])
 
 
 def _windowed(

@@ -12,7 +12,7 @@ from tempose.curves import Spline, interpolating_spline, monotone_map
 from tempose.curves.refine import insert_knots
 from tempose.signals.edits._frames import frame_seconds
 from tempose.signals.pose.choose import choose_layout, pose_distances
-from tempose.signals.pose.layout import PoseLayout
+from tempose.signals.pose.layout import PoseLayout, congruence
 from tempose.signals.pose.signal import PoseSignal
 from tempose.signals.pose.sites import order_sites
 from tempose.signals.pose.transitions import find_bad_transitions
@@ -59,31 +59,6 @@ def pin_frames(signals: Signals, pins: Mapping[float, Sequence[float] | FloatArr
     return _laid_out(signals, ticks, near, _pose_signal(signals, near, turned), places)
 
 
-def pin_frame(signals: Signals, frame: float, at: Sequence[float] | FloatArray) -> Signals:
-    """Give one frame its place in the pose plane; see `pin_frames`.
-
-    Parameters
-    ----------
-    signals : Signals
-        What is edited; stays as it is.
-    frame : float
-        Frame from 0.
-    at : (2,) float
-        Its place.
-
-    Returns
-    -------
-    Signals
-        Laid out anew.
-
-    Raises
-    ------
-    ValueError
-        As `pin_frames` raises it.
-    """
-    return pin_frames(signals, {frame: at})
-
-
 def repair_transitions(signals: Signals) -> Signals:
     """Lay out what is played so that the way from frame to frame is good.
 
@@ -109,7 +84,7 @@ def repair_transitions(signals: Signals) -> Signals:
         return signals
     choice = choose_layout(turned)
     places, samples = choice.samples(turned)
-    to_old = _Onto(choice.positions, signals.time(ticks))
+    to_old = congruence(choice.positions, signals.time(ticks))
     pose = _pose_signal(signals, to_old(places), samples, extra=len(choice.middles))
     result = _laid_out(signals, ticks, to_old(choice.positions), pose, {})
     return min((signals, result), key=lambda s: _bad(s, X, ticks))
@@ -142,8 +117,7 @@ def _laid_out(
     parameters = fitted.pace.values
     curve = _through(fitted.curve, parameters[list(pins)], np.array([*pins.values()]).reshape(-1, 2))
     time = TimeSignal(curve, curve, monotone_map(ticks, parameters))
-    path = _played_path(signals, ticks)
-    return replace(signals, pose=pose, time=time, path=path, fade_step=None)
+    return replace(signals, pose=pose, time=time, path=_played_path(signals), fade_step=None)
 
 
 def _pose_signal(signals: Signals, P: FloatArray, turned: FloatArray, extra: int = 0) -> PoseSignal:
@@ -164,7 +138,7 @@ def _through(curve: Spline, u: FloatArray, places: FloatArray) -> Spline:
     return Spline(curve.knots, curve.controls + change)
 
 
-def _played_path(signals: Signals, ticks: FloatArray) -> Spline | None:
+def _played_path(signals: Signals) -> Spline | None:
     """Return the path with the edits of the curve in it: the new layout knows nothing of them."""
     path, time = signals.path, signals.time
     if path is None or np.array_equal(time.curve.controls, time.unedited.controls):
@@ -179,22 +153,8 @@ def _played_path(signals: Signals, ticks: FloatArray) -> Spline | None:
     return Spline(fine.knots, fine.controls + interpolating_spline(u, played - path(u)).controls)
 
 
-def _bad(signals: Signals, X: FloatArray, ticks: FloatArray) -> int:
-    path, grid = interpolating_spline(np.arange(len(X), dtype=np.float64), X), ticks
-
+def _bad(signals: Signals, X: FloatArray, grid: FloatArray) -> int:
     def place_of(ticks: FloatArray) -> FloatArray:
         return signals.time(np.interp(ticks, np.arange(len(grid)), grid))
 
-    return int(find_bad_transitions(signals.pose, place_of, X, path=path).bad.sum())
-
-
-class _Onto:
-    """The turn, reflection and shift that brings places nearest to others: a new layout looks familiar."""
-
-    def __init__(self, P: FloatArray, Q: FloatArray) -> None:
-        self._from, self._to = P.mean(axis=0), Q.mean(axis=0)
-        U, _, Vt = np.linalg.svd((P - self._from).T @ (Q - self._to))
-        self._turn = U @ Vt
-
-    def __call__(self, P: FloatArray) -> FloatArray:
-        return (P - self._from) @ self._turn + self._to
+    return int(find_bad_transitions(signals.pose, place_of, X).bad.sum())

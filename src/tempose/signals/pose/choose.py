@@ -9,12 +9,14 @@ import numpy as np
 from scipy.spatial.distance import pdist, squareform
 
 from tempose._validate import as_floats, read_only
-from tempose.curves import Spline, interpolating_spline
-from tempose.signals.pose.judge import Judgement, aspect_ratio, curve_through, judge_layout
+from tempose.curves import Spline
+from tempose.signals.pose.judge import Judgement, aspect_ratio, judge_layout
 from tempose.signals.pose.layout import PoseLayout, stress_of
+from tempose.signals.pose.middles import middles_of, with_middles
 from tempose.signals.pose.pins import Pins, check_pins
 from tempose.signals.pose.smoothing import main_columns, smooth_transitions
 from tempose.signals.pose.time_graph import time_graph_distances
+from tempose.signals.time.path import time_path
 from tempose.typing import FloatArray, IntArray
 
 REACHES = (4.0, 3.0, 2.5, 2.0)
@@ -70,11 +72,7 @@ class LayoutChoice:
         X : (n + e, m) ndarray
             Shape coordinates of the frames, then of the smooth motion at the middles.
         """
-        if len(self.middles) == 0:
-            return self.positions, X
-        path = interpolating_spline(np.arange(len(X), dtype=np.float64), X)
-        between = curve_through(self.positions)(self.middles)
-        return np.concatenate([self.positions, between]), np.concatenate([X, path(self.middles)])
+        return with_middles(self.positions, X, self.middles)
 
 
 def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
@@ -110,7 +108,7 @@ def choose_layout(X: FloatArray, pins: Pins | None = None) -> LayoutChoice:
     frames, _, warnings = check_pins(pins, distances)
     if len(X) < 3:
         return _small(X, distances, pins, warnings)
-    path = interpolating_spline(np.arange(len(X), dtype=np.float64), X)
+    path = time_path(X)
     tried: list[Judgement] = []
     for name, target in _targets(X, distances, path):
         first, result = len(tried), PoseLayout(target).solve(pins)
@@ -191,7 +189,7 @@ def _with_middles(
     middles = np.zeros(0)
     for _ in range(3):
         bad = np.flatnonzero(best.transitions.bad if len(middles) == 0 else tried[-1].transitions.bad)
-        middles = np.union1d(middles, (bad[:, None] + np.array([0.25, 0.5, 0.75])).ravel())
+        middles = np.union1d(middles, middles_of(bad))
         tried.append(judge_layout(f"{best.name} + middles", best.positions, X, best.stress, path, middles))
         if tried[-1].bad == 0:
             return _chosen(tried[-1], tried, warnings, middles)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tempose._validate import as_floats
-from tempose.curves import Spline, interpolating_spline
+from tempose.curves import Spline
 from tempose.signals.pose.signal import PoseSignal
 from tempose.signals.pose.sites import SiteOrder, order_sites
 from tempose.signals.pose.transitions import PlaceMap
+from tempose.signals.time.path import time_path
 from tempose.typing import FloatArray
 
 FRAME_WEIGHT = 900.0
@@ -53,7 +54,7 @@ def densified_order(
         return order_sites(P, X)
     if times < 1:
         raise ValueError(f"times must be 1 or more, got {times}")
-    path = interpolating_spline(np.arange(n, dtype=np.float64), X) if path is None else path
+    path = time_path(X) if path is None else path
     ticks = np.arange(times * (n - 1) + 1) / times
     places, values = time(ticks), path(ticks)
     places[::times], values[::times] = P, X

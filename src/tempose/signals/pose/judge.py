@@ -9,8 +9,8 @@ import numpy as np
 from tempose.curves import Spline
 from tempose.signals.pose.crossings import find_crossings
 from tempose.signals.pose.fit import interpolating_pose_signal
-from tempose.signals.pose.transitions import PlaceMap, Transitions, find_bad_transitions
-from tempose.signals.time.fit import fit_time_signal
+from tempose.signals.pose.middles import curve_through, with_middles
+from tempose.signals.pose.transitions import Transitions, find_bad_transitions
 from tempose.typing import FloatArray
 
 
@@ -62,11 +62,9 @@ def judge_layout(
     Judgement
         With the transitions of the interpolating signals.
     """
-    curve = curve_through(P)
-    places, values = P, X
-    if middles is not None and len(middles):
-        places, values = np.concatenate([P, curve(middles)]), np.concatenate([X, path(middles)])
-    transitions = find_bad_transitions(interpolating_pose_signal(places, values), curve, X, path=path)
+    samples = with_middles(P, X, np.zeros(0) if middles is None else middles, path)
+    pose = interpolating_pose_signal(*samples)
+    transitions = find_bad_transitions(pose, curve_through(P), X, path=path)
     return Judgement(name, P, transitions, aspect_ratio(P), len(find_crossings(P)), stress)
 
 
@@ -85,19 +83,3 @@ def aspect_ratio(P: FloatArray) -> float:
     """
     spread = np.linalg.svd(P - P.mean(axis=0), compute_uv=False)
     return float(spread[1] / spread[0]) if len(spread) > 1 and spread[0] > 0 else 0.0
-
-
-def curve_through(P: FloatArray) -> PlaceMap:
-    """Return the time signal through all places: k = n + 2 of the paper.
-
-    Parameters
-    ----------
-    P : (n, 2) float
-        Places of frames, n >= 2.
-
-    Returns
-    -------
-    callable
-        Ticks to places: a natural cubic spline over centripetal parameters, with a monotone pace.
-    """
-    return fit_time_signal(P, len(P) + 2)

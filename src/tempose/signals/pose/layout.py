@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -141,7 +142,8 @@ class PoseLayout:
         """
         frames, places, warnings = check_pins(pins or {}, self.distances)
         if start is None:
-            P = align(self.start(), frames, places)
+            P = self.start()
+            P = congruence(P[frames], places)(P) if len(frames) else P
         else:
             P = np.array(as_floats(start, "start", (len(self._unit), 2)))
         return self._iterate(P, frames, places, tolerance, iterations, warnings)
@@ -207,25 +209,22 @@ def stress_of(P: FloatArray, distances: FloatArray) -> float:
     return float(np.sqrt(np.square(lengths - pdist(P)).sum() / total)) if total > 0 else 0.0
 
 
-def align(P: FloatArray, frames: IntArray, places: FloatArray) -> FloatArray:
-    """Turn, mirror and move a layout so that some of its frames come near places.
+def congruence(P: FloatArray, Q: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Return the turn, reflection and shift that brings places nearest to others.
 
     Parameters
     ----------
-    P : (n, 2) float
-        A layout.
-    frames : (c,) int
-        Which of its frames...
-    places : (c, 2) float
-        ...are to come where.
+    P : (c, 2) float
+        Places...
+    Q : (c, 2) float
+        ...and where they are to come, one or more.
 
     Returns
     -------
-    (n, 2) ndarray
-        The moved layout; the layout itself when there are no frames.
+    callable
+        Moves any (N, 2) places.
     """
-    if len(frames) == 0:
-        return P.copy()
-    here, there = P[frames].mean(axis=0), places.mean(axis=0)
-    U, _, Vt = np.linalg.svd((P[frames] - here).T @ (places - there))
-    return (P - here) @ (U @ Vt) + there
+    here, there = P.mean(axis=0), Q.mean(axis=0)
+    U, _, Vt = np.linalg.svd((P - here).T @ (Q - there))
+    turn = U @ Vt
+    return lambda places: (places - here) @ turn + there

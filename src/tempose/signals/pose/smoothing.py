@@ -13,12 +13,11 @@ from tempose.signals.pose._smacof import pair_sums
 from tempose.signals.pose._spline_gradients import pair_tables, pull_back
 from tempose.signals.pose.basis import plane_of
 from tempose.signals.pose.merging import merge_places
+from tempose.signals.pose.middles import QUARTERS, middles_of
 from tempose.signals.pose.transitions import step_sizes
 from tempose.signals.time.parameters import centripetal_parameters
+from tempose.signals.time.path import time_path
 from tempose.typing import FloatArray, IntArray
-
-_BETWEEN = (0.25, 0.5, 0.75)
-"""Where between frames the pose signal is held against the motion."""
 
 _WEIGHT = 1.0
 """Of the mean logarithm of deviations against the stress."""
@@ -83,9 +82,9 @@ class _Smoothing:
         self.free = np.ones(len(self.start), dtype=np.bool_)
         self.free[self.group[fixed]] = False
         n = len(P)
-        self.ticks = (np.arange(n - 1, dtype=np.float64)[:, None] + np.array(_BETWEEN)).ravel()
-        path = interpolating_spline(np.arange(n, dtype=np.float64), X)
-        self.path, self.steps = path(self.ticks), np.repeat(step_sizes(X), len(_BETWEEN))[:, None]
+        self.ticks = middles_of(np.arange(n - 1))
+        self.path = time_path(X)(self.ticks)
+        self.steps = np.repeat(step_sizes(X), len(QUARTERS))[:, None]
         self.curve = np.zeros((len(self.ticks), n))
 
     def run(self) -> FloatArray:

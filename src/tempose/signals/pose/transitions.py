@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from tempose._validate import as_floats, read_only
-from tempose.curves import Spline, interpolating_spline
+from tempose.curves import Spline
+from tempose.signals.time.path import time_path
 from tempose.typing import BoolArray, FloatArray
 
 LIMIT = 0.5
@@ -106,7 +107,7 @@ def find_bad_transitions(
     X = as_floats(X, "X", ("n", "m"))
     if len(X) < 2:
         return Transitions(np.zeros(0), limit)
-    path = interpolating_spline(np.arange(len(X), dtype=np.float64), X) if path is None else path
+    path = time_path(X) if path is None else path
     middles = np.arange(len(X) - 1) + 0.5
     frames = np.arange(len(X), dtype=np.float64)
     stray = np.linalg.norm(pose(time(middles), middles) - path(middles), axis=1)

@@ -10,7 +10,7 @@ import numpy as np
 from tempose._validate import as_floats
 from tempose.signals.fidelity import choose_sites
 from tempose.signals.pose.densified import densified_order
-from tempose.signals.pose.judge import curve_through
+from tempose.signals.pose.middles import curve_through, middles_of
 from tempose.signals.pose.pins import Pins
 from tempose.signals.pose.signal import PoseSignal
 from tempose.signals.pose.sites import order_sites
@@ -200,7 +200,7 @@ def _without_bad_transitions(
             best, best_middles, fewest = pose, middles, len(bad)
         if len(bad) == 0:
             break
-        fresh = np.setdiff1d((bad[:, None] + np.array([0.25, 0.5, 0.75])).ravel(), middles)
+        fresh = np.setdiff1d(middles_of(bad), middles)
         middles = np.union1d(middles, fresh)
         signals = list(pose.windows)
         for i in range(len(windows)):
