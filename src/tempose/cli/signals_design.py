@@ -9,7 +9,8 @@ import typer
 
 import tempose
 from tempose.cli.console import note, writing
-from tempose.cli.signals_options import OutModel, Plot, check_folder, check_model_out, describe, write_plots
+from tempose.cli.signals_files import check_folder, check_model_out, describe, write_plots
+from tempose.cli.signals_options import OutModel, Plot
 
 DesignFile = Annotated[
     Path,

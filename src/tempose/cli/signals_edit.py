@@ -11,17 +11,8 @@ import typer
 from tempose.cli.console import note, show_json, show_table, writing
 from tempose.cli.options import Json
 from tempose.cli.report import make_report, write_report
-from tempose.cli.signals_options import (
-    ModelFile,
-    OutModel,
-    Plot,
-    ReportFile,
-    check_folder,
-    check_model_out,
-    describe,
-    load_signals,
-    write_plots,
-)
+from tempose.cli.signals_files import check_folder, check_model_out, describe, load_signals, write_plots
+from tempose.cli.signals_options import ModelFile, OutModel, Plot, ReportFile
 
 EditFile = Annotated[
     Path,

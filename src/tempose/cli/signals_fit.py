@@ -10,6 +10,7 @@ from tempose.cli import signals_options as given
 from tempose.cli.console import note, progress_bar, show_json, show_table, writing
 from tempose.cli.options import Clip, Group, Json, Start, Step, Stop, Topology
 from tempose.cli.report import make_report, write_report
+from tempose.cli.signals_files import check_folder, check_model_out, write_plots
 
 if TYPE_CHECKING:
     from tempose.clips import MeshClip
@@ -29,7 +30,7 @@ def fit(  # numpydoc ignore=PR01
     layout: given.Layout = "auto",
     placement: given.Placement = False,
     period: given.Period = "auto",
-    window: given.Window = 400,
+    window: given.Window = 300,
     examples: given.Examples = None,
     plot: given.Plot = None,
     report: given.ReportFile = None,
@@ -48,10 +49,10 @@ def fit(  # numpydoc ignore=PR01
     """Turn a clip into a curve through a plane of poses, which can be played at any moment and edited."""
     began = time.perf_counter()
     options = given.merged_options(locals(), "clip_file", "out", "report", "json", "plot", "began")
-    given.check_model_out(out)
+    check_model_out(out)
     for path in (report, plot):
         if path is not None:
-            given.check_folder(path)
+            check_folder(path)
     settings: dict[str, Any] = {"k": k, "l": l, "m": m, "between": between, "layout": layout}
     settings |= {"placement": placement, "period": given.parse_period(period), "window": window}
     model = tempose.SignalModel(space, tolerance=tolerance, **settings)
@@ -75,7 +76,7 @@ def fit(  # numpydoc ignore=PR01
     if report is not None:
         write_report(report, full)
     if plot is not None:
-        given.write_plots(model, plot)
+        write_plots(model, plot)
     _tell(full, model, json)
 
 

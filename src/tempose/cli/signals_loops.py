@@ -10,7 +10,8 @@ import typer
 import tempose
 from tempose.cli.console import note, progress_bar, show_json, show_table
 from tempose.cli.options import Clip, Group, Json
-from tempose.cli.signals_options import InputFps, InputUnit, InputUp, load_signals
+from tempose.cli.signals_files import load_signals
+from tempose.cli.signals_options import InputFps, InputUnit, InputUp
 
 if TYPE_CHECKING:
     from tempose.signals.loops import Loop

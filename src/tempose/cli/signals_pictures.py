@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from tempose.cli.console import note, progress_bar, writing
-from tempose.cli.signals_options import ModelFile, check_folder, load_signals, parse_numbers, write_plots
+from tempose.cli.signals_files import check_folder, load_signals, write_plots
+from tempose.cli.signals_options import ModelFile, parse_numbers
 
 OutPicture = Annotated[Path, typer.Option("-o", "--out", metavar="GRID.png", help="Where the picture goes.")]
 RegionOption = Annotated[

@@ -12,7 +12,8 @@ import typer
 import tempose
 from tempose.cli.console import note, progress_bar, writing
 from tempose.cli.options import Tolerance, UnitOption, Up, check_out
-from tempose.cli.signals_options import ModelFile, load_signals
+from tempose.cli.signals_files import load_signals
+from tempose.cli.signals_options import ModelFile
 from tempose.cli.transfer_frames import releasing, room_for_frames
 from tempose.typing import FloatArray
 
