@@ -17,7 +17,7 @@ from tempose import load
 from tempose.clips.resample import select_frames
 from tempose.metrics import compare
 from tempose.signals import SignalModel
-from tempose.signals.baselines import left_out_errors
+from tempose.signals.report.baselines import left_out_errors
 
 CASES: dict[str, tuple[str, int | None, tuple[int, ...]]] = {
     "horse-24": ("horse-gallop", 24, (2, 4)),

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.signals import Signals
-from tempose.signals.add_pose import add_pose
 from tempose.signals.edits import move_control
+from tempose.signals.edits.add_pose import add_pose
 
 
 def shown_at(signals: Signals, at: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ import pytest
 from model_clips import swinging, wandering
 
 from tempose.signals import SignalModel
-from tempose.signals.fidelity import POSE_SHARE, SHAPE_SHARE, choose_controls, choose_sites
+from tempose.signals.fit.fidelity import POSE_SHARE, SHAPE_SHARE, choose_controls, choose_sites
 
 
 @pytest.mark.parametrize("tolerance", [5.0, 1.0, 0.2, 0.02])

@@ -108,7 +108,7 @@ def test_poses_of_the_plane_are_h_of_g(model: SignalModel) -> None:
 def test_a_long_clip_is_fitted_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:
     clip = swinging()
     whole = SignalModel(k=30, l=9, m=3).fit(clip)
-    monkeypatch.setattr("tempose.signals.frames.IN_MEMORY", 100)
+    monkeypatch.setattr("tempose.signals.fit.frames.IN_MEMORY", 100)
     blocks = SignalModel(k=30, l=9, m=3).fit(clip)
     assert_allclose(blocks.sample(dtype=np.float64), whole.sample(dtype=np.float64), atol=1e-6)
     for name in ("h", "g", "whole"):
@@ -118,7 +118,7 @@ def test_a_long_clip_is_fitted_block_by_block(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_still_long_clip_is_a_constant(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tempose.signals.frames.IN_MEMORY", 100)
+    monkeypatch.setattr("tempose.signals.fit.frames.IN_MEMORY", 100)
     clip = clip_of(np.repeat(swinging().vertices[:1], 30, axis=0))
     model = SignalModel().fit(clip)
     assert_allclose(model(0.3), clip.vertices[0], atol=1e-6)

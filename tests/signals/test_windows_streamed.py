@@ -10,7 +10,7 @@ from tempose.clips import Mesh, MeshClip
 from tempose.rotations import from_rotation_vector
 from tempose.shape_spaces import SPACES
 from tempose.signals import SignalModel
-from tempose.signals.frames import FOLLOWING, ClipFrames
+from tempose.signals.fit.frames import FOLLOWING, ClipFrames
 from tempose.signals.placement import place
 from tempose.signals.shape.streamed import (
     encoded_blocks,
@@ -63,7 +63,7 @@ def test_a_streamed_fit_meets_the_tolerance_with_hardly_more_modes(
 ) -> None:
     clip = flag(70)
     plain = SignalModel(space=space, tolerance=0.5, placement=True).fit(clip)
-    monkeypatch.setattr("tempose.signals.frames.IN_MEMORY", 100)
+    monkeypatch.setattr("tempose.signals.fit.frames.IN_MEMORY", 100)
     found = SignalModel(space=space, tolerance=0.5, placement=True).fit(clip)
     for model in (plain, found):
         percent = 100 * np.sqrt(np.square(off(model, clip)).mean()) / clip.mesh.diagonal
@@ -73,13 +73,13 @@ def test_a_streamed_fit_meets_the_tolerance_with_hardly_more_modes(
 
 
 def test_the_number_of_modes_asked_for_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tempose.signals.frames.IN_MEMORY", 100)
+    monkeypatch.setattr("tempose.signals.fit.frames.IN_MEMORY", 100)
     model = SignalModel(space="gradient", m=5, l=30, k=40).fit(flag(40))
     assert model.report_["m"] == 5
 
 
 def test_a_space_that_cannot_go_on_refuses_a_clip_that_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tempose.signals.frames.IN_MEMORY", 100)
+    monkeypatch.setattr("tempose.signals.fit.frames.IN_MEMORY", 100)
     for space in set(SPACES) - set(FOLLOWING):
         with pytest.raises(ValueError, match=r"too large for the space.*choose vertex, gradient or patch"):
             SignalModel(space=space).fit(flag(20))

@@ -111,7 +111,7 @@ def _load_examples(paths: list[str] | None, clip: MeshClip, up: str | None, unit
 
 
 def _measures(clip: MeshClip, model: SignalModel, held_out: int, progress: Any) -> dict[str, Any]:
-    from tempose.signals.baselines import LARGEST, key_frame_errors, left_out_errors
+    from tempose.signals.report.baselines import LARGEST, key_frame_errors, left_out_errors
 
     if clip.vertices.size > LARGEST:
         warnings = [*model.report_["warnings"], "baselines were not measured: the clip is too large"]

@@ -12,11 +12,11 @@ import numpy as np
 
 from tempose.clips import MeshClip
 from tempose.clips.source import Source
-from tempose.signals.fitting import fit_clip
-from tempose.signals.model_file import read_signal_model, write_signal_model
-from tempose.signals.options import FitOptions
-from tempose.signals.report import fit_report
+from tempose.signals.fit.clip import fit_clip
+from tempose.signals.fit.options import FitOptions
+from tempose.signals.report.report import fit_report
 from tempose.signals.sampling import sample, sample_blocks
+from tempose.signals.saving.model_file import read_signal_model, write_signal_model
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray, IntArray, Progress, silent
 

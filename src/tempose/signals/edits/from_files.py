@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from tempose.formats import load_mesh
-from tempose.signals.add_pose import add_pose
+from tempose.signals.edits.add_pose import add_pose
 from tempose.signals.replace_shape import load_poses, replace_shape
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
 
 
 def add_pose_from(signals: Signals, file: str, at: FloatArray, folder: Path, notes: list[str]) -> Signals:
-    """Add the pose in a file; see `tempose.signals.add_pose.add_pose`.
+    """Add the pose in a file; see `tempose.signals.edits.add_pose.add_pose`.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ import numpy as np
 
 from tempose.clips import MeshClip
 from tempose.linalg.pca import gram_pca
-from tempose.signals.frames import ClipFrames
+from tempose.signals.fit.frames import ClipFrames
 from tempose.typing import FloatArray, Progress, silent
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tempose.linalg.streamed_pca import StreamedPca, streamed_pca
 from tempose.shape_spaces import ShapeSpace, VertexSpace, shape_space
-from tempose.signals.frames import FOLLOWING, ClipFrames
+from tempose.signals.fit.frames import FOLLOWING, ClipFrames
 from tempose.signals.shape.fit import FittedShape, checked_frames
 from tempose.signals.shape.signal import ShapeSignal
 from tempose.typing import FloatArray, IntArray, Progress, silent

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose._validate import as_floats
-from tempose.signals.fidelity import choose_sites
+from tempose.signals.fit.fidelity import choose_sites
 from tempose.signals.pose.densified import densified_order
 from tempose.signals.pose.middles import curve_through, middles_of
 from tempose.signals.pose.pins import Pins

@@ -13,7 +13,7 @@ from tempose.clips import MeshClip
 from tempose.clips.resample import select_frames
 from tempose.curves import interpolating_spline
 from tempose.metrics import compare
-from tempose.signals.frames import clip_diagonal
+from tempose.signals.fit.frames import clip_diagonal
 from tempose.signals.model import SignalModel
 from tempose.typing import FloatArray, IntArray, Progress, silent
 

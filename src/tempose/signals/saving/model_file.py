@@ -12,8 +12,8 @@ import numpy as np
 
 from tempose.clips.source import Source
 from tempose.models import load_model, save_model
-from tempose.signals.options import FitOptions
-from tempose.signals.saving import from_arrays, to_arrays
+from tempose.signals.fit.options import FitOptions
+from tempose.signals.saving.tree import from_arrays, to_arrays
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
 

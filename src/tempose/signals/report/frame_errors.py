@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.signals.fitting import FittedClip
+from tempose.signals.fit.clip import FittedClip
 from tempose.signals.shape.fit import FittedShape
 from tempose.typing import FloatArray
 

@@ -13,9 +13,9 @@ from tempose._version import __version__
 from tempose.clips import MeshClip
 from tempose.metrics import ErrorMeter
 from tempose.signals.blocks import block_slices, read_block
-from tempose.signals.fitting import FittedClip
-from tempose.signals.frame_errors import frame_errors, scree
-from tempose.signals.options import FitOptions
+from tempose.signals.fit.clip import FittedClip
+from tempose.signals.fit.options import FitOptions
+from tempose.signals.report.frame_errors import frame_errors, scree
 from tempose.signals.sampling import evaluate
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray, Progress, silent

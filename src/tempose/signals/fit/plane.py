@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tempose.signals.fidelity import POSE_SHARE, choose_controls, choose_sites
-from tempose.signals.notes import Notes
-from tempose.signals.options import FitOptions
+from tempose.signals.fit.fidelity import POSE_SHARE, choose_controls, choose_sites
+from tempose.signals.fit.notes import Notes
+from tempose.signals.fit.options import FitOptions
 from tempose.signals.pose import (
     PoseLayout,
     PoseSignal,

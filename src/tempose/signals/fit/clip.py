@@ -11,18 +11,18 @@ import numpy as np
 from tempose.clips import MeshClip
 from tempose.curves import Spline
 from tempose.shape_spaces import ShapeSpace, VertexSpace, shape_space
-from tempose.signals.fidelity import SHAPE_SHARE
-from tempose.signals.frames import ClipFrames, example_vertices
-from tempose.signals.notes import Notes
-from tempose.signals.options import FitOptions, check_pins
+from tempose.signals.fit.fidelity import SHAPE_SHARE
+from tempose.signals.fit.frames import ClipFrames, example_vertices
+from tempose.signals.fit.notes import Notes
+from tempose.signals.fit.options import FitOptions, check_pins
+from tempose.signals.fit.plane import Goal, Plane, fit_plane, fit_time, turned
+from tempose.signals.fit.still import still_signals
 from tempose.signals.placement import placement_spline
-from tempose.signals.plane import Goal, Plane, fit_plane, fit_time, turned
 from tempose.signals.pose.transitions import find_bad_transitions
 from tempose.signals.room import check_room
 from tempose.signals.shape.fit import FittedShape, Percent, checked_frames, fit_examples, fit_shape, rescaled
 from tempose.signals.shape.streamed import fit_streamed_shape, streamed_space
 from tempose.signals.signals import Signals
-from tempose.signals.still import still_signals
 from tempose.signals.time.path import time_path
 from tempose.signals.time.period import find_period
 from tempose.signals.time.signal import TimeSignal

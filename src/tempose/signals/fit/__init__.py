@@ -1,0 +1,1 @@
+"""Fitting: a clip becomes signals, within a tolerance."""

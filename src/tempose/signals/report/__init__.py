@@ -1,0 +1,1 @@
+"""What a fit tells of itself: its errors, and those of simple interpolation."""
