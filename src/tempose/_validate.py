@@ -99,7 +99,7 @@ def _as_shape(value: Any, name: str, shape: tuple[int | str, ...], dtype: Any) -
     try:
         with np.errstate(over="ignore"):  # what overflows float32 becomes infinite, which as_floats refuses
             array = np.asarray(value, dtype=dtype)
-    except (TypeError, ValueError) as error:
+    except (OverflowError, TypeError, ValueError) as error:
         raise ValueError(
             f"{name} must be an array of numbers of shape {_shape_text(shape)}: {error}"
         ) from None

@@ -109,6 +109,16 @@ def test_left_out_frames_are_the_odd_ones(run: Run, job: Path) -> None:
     assert found["rms"] == pytest.approx(rms, rel=1e-6)
 
 
+def test_a_period_given_counts_fewer_of_the_frames_kept(run: Run, job: Path) -> None:
+    for period in (6, 13):
+        ran = run(
+            *("signals", "fit", "clip.npz", "-o", "m.tempose", "--report", "r.json", "--period", period),
+            *("--held-out", 4),
+        )
+        assert ran.code == 0, ran.err
+        assert json.loads(Path("r.json").read_text())["heldout"]["ours"]["rms"] > 0
+
+
 def test_examples_span_the_shape(run: Run, job: Path) -> None:
     clip = tempose.load("clip.npz")
     for i in (0, 5, 10):

@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.formats import save
 from tempose.signals.edits import OPERATIONS, apply_edits, load_edits, move_control, pin_frames, set_fps
+from tempose.signals.replace_shape import locate
 
 BASE = signals_of(swinging(40), k=16, l=20)
 
@@ -87,6 +88,17 @@ def test_pins_that_follow_one_another_hold_together() -> None:
         ({"op": "add_pose", "file": 3, "at": [0, 0]}, "file must be a text"),
         ({"op": "add_pose", "file": "no.obj", "at": [0, 0]}, r"\(add_pose\): .*no\.obj"),
         ({"op": "replace_shape", "source": [], "target": ["a"]}, "source must be a list of file names"),
+        ({"op": "loop", "from": 5, "to": 9, "times": 10**9}, "times = 1e.09 would make 4e.09 frames"),
+        ({"op": "close_loop", "from": 5, "to": 19, "insert": 1e9}, "insert = 1e.09 would make"),
+        ({"op": "blend", "from": 5, "to": 9, "frames": 1e9}, "frames = 1e.09 would make"),
+        ({"op": "insert_curve", "at": 5, "points": [[0, 0]], "frames": 1e9}, "frames = 1e.09 would make"),
+        ({"op": "fps", "value": 1e9}, "value = 1e.09 would make"),
+        ({"op": "speed", "from": 5, "to": 9, "factor": 1e-9}, "factor = 1e-09 would make"),
+        ({"op": "retime", "keys": [[0, 0], [1e9, 20]]}, "last frame of keys = 1e.09 would make"),
+        ({"op": "move", "control": 10**400, "by": [0, 0]}, "control must be a finite number"),
+        ({"op": "move", "control": 3, "by": [10**400, 0]}, "by must be an array of numbers"),
+        ({"op": "move", "control": 3, "by": [1e308, 0]}, "by puts control 3 at .* go up to"),
+        ({"op": "place", "control": 3, "at": [1e308, 0]}, "at puts control 3 at .* go up to"),
         ({"control": 3}, 'operation 1 must be a table with a key "op"'),
         ("move", 'operation 1 must be a table with a key "op"'),
     ],
@@ -122,6 +134,24 @@ def test_files_that_are_no_lists_are_refused(name: str, text: str, message: str,
     (tmp_path / name).write_text(text)
     with pytest.raises(ValueError, match=message):
         load_edits(tmp_path / name)
+
+
+def test_poses_that_are_not_beside_the_list_are_read_from_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, lists = tmp_path / "here", tmp_path / "lists"
+    here.mkdir()
+    lists.mkdir()
+    monkeypatch.chdir(here)
+    assert locate("a.obj", lists) == lists / "a.obj"
+    for name in ("a.obj", "b.0001.obj"):
+        (here / name).touch()
+        assert locate(name, lists) == Path(name)
+    assert locate("b.####.obj", lists) == Path("b.####.obj")
+    assert locate("b.%04d.obj", lists) == Path("b.%04d.obj")
+    assert locate("b*.obj", lists) == Path("b*.obj")
+    (lists / "a.obj").touch()
+    assert locate("a.obj", lists) == lists / "a.obj"
 
 
 def test_poses_are_read_from_the_folder_of_the_list(tmp_path: Path) -> None:

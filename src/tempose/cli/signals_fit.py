@@ -58,6 +58,8 @@ def fit(  # numpydoc ignore=PR01
     model = tempose.SignalModel(space, tolerance=tolerance, **settings)
     model.options  # noqa: B018  # wrong options are told before a long clip is read
     pins = given.parse_pins(fix)
+    if held_out < 0 or held_out == 1:
+        raise ValueError(f"--held-out must be 2 or more frames, or 0 to measure nothing, got {held_out}")
     reading: dict[str, Any] = {"up": up, "unit": unit, "fps": fps, "group": group, "clip": clip}
     source = _load(clip_file, start, stop, step, reading | {"topology": topology})
     poses = _load_examples(examples, source, up, unit)

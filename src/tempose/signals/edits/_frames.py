@@ -7,6 +7,9 @@ from typing import Any
 
 from tempose.signals.signals import Signals
 
+MOST_FRAMES = 1_000_000
+"""What an edit may play at most, nine hours at 30 a second: a slip of the pen must not fill the memory."""
+
 
 def frame_seconds(signals: Signals, frame: Any, name: str) -> float:
     """Return when a frame is played.
@@ -62,3 +65,26 @@ def frame_span(signals: Signals, start: Any, stop: Any) -> tuple[float, float]:
     if not b - a > 1e-9 * signals.duration:
         raise ValueError(f"to must be a frame after from = {start:.6g}, got {stop:.6g}")
     return a, b
+
+
+def check_length(frames: float, name: str, value: float) -> None:
+    """Refuse an edit that would play more frames than anyone means.
+
+    Parameters
+    ----------
+    frames : float
+        How many would be played.
+    name : str
+        Name of the argument that makes them so many, for the message.
+    value : float
+        What it is.
+
+    Raises
+    ------
+    ValueError
+        If they are more than `MOST_FRAMES`.
+    """
+    if not frames <= MOST_FRAMES:
+        raise ValueError(
+            f"{name} = {value:.6g} would make {frames:.6g} frames, expected at most {MOST_FRAMES} in all"
+        )

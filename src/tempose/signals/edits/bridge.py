@@ -10,7 +10,7 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.curves import MonotoneMap, Spline
-from tempose.signals.edits._frames import frame_seconds
+from tempose.signals.edits._frames import check_length, frame_seconds
 from tempose.signals.edits.seams import derivatives, join_maps, join_splines, middle_spline
 from tempose.signals.placement import ground_motions
 from tempose.signals.signals import Signals
@@ -92,6 +92,7 @@ class _Gap:
 def _bridged(signals: Signals, a: float, b: float, points: FloatArray, frames: float) -> Signals:
     if isinstance(frames, bool) or not 1 <= frames < math.inf:
         raise ValueError(f"frames must be 1 or more, got {frames!r}")
+    check_length(signals.duration * signals.fps + frames, "frames", frames)
     beats = frames / signals.fps * signals.rate
     gap = _Gap(a * signals.rate, a * signals.rate + beats, b * signals.rate)
     retimings: list[MonotoneMap] = []

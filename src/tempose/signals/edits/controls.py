@@ -16,6 +16,9 @@ from tempose.signals.edits.knots import free_place
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
 
+FARTHEST = 1e6
+"""Sizes of the curve beyond which a control cannot be: splines of the plane overflow long after that."""
+
 
 def move_control(signals: Signals, control: int, by: Sequence[float] | FloatArray) -> Signals:
     """Move a control point of the curve.
@@ -40,7 +43,8 @@ def move_control(signals: Signals, control: int, by: Sequence[float] | FloatArra
         If there is no such control or `by` is no pair of numbers.
     """
     i = _control_index(signals, control)
-    return _with_control(signals, i, signals.time.curve.controls[i] + as_floats(by, "by", (2,)))
+    at = signals.time.curve.controls[i] + as_floats(by, "by", (2,))
+    return _with_control(signals, i, at, "by")
 
 
 def place_control(signals: Signals, control: int, at: Sequence[float] | FloatArray) -> Signals:
@@ -65,7 +69,7 @@ def place_control(signals: Signals, control: int, at: Sequence[float] | FloatArr
     ValueError
         If there is no such control or `at` is no pair of numbers.
     """
-    return _with_control(signals, _control_index(signals, control), as_floats(at, "at", (2,)))
+    return _with_control(signals, _control_index(signals, control), as_floats(at, "at", (2,)), "at")
 
 
 def insert_control(signals: Signals, at: float) -> Signals:
@@ -103,8 +107,14 @@ def _control_index(signals: Signals, control: Any) -> int:
     return int(control)
 
 
-def _with_control(signals: Signals, i: int, at: FloatArray) -> Signals:
+def _with_control(signals: Signals, i: int, at: FloatArray, name: str) -> Signals:
     curve = signals.time.curve
+    size = float(np.abs(signals.time.unedited.controls).max()) or 1.0
+    if not np.abs(at).max() <= FARTHEST * size:
+        raise ValueError(
+            f"{name} puts control {i} at [{at[0]:.3g}, {at[1]:.3g}], expected a place in or near the curve, "
+            f"whose coordinates go up to {size:.3g}"
+        )
     controls = curve.controls.copy()
     controls[i] = at
     step = signals.pose_step if signals.fade_step is None else signals.fade_step

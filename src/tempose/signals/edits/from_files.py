@@ -7,7 +7,7 @@ from typing import Any
 
 from tempose.formats import load_mesh
 from tempose.signals.edits.add_pose import add_pose
-from tempose.signals.replace_shape import load_poses, replace_shape
+from tempose.signals.replace_shape import load_poses, locate, replace_shape
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
 
@@ -33,7 +33,7 @@ def add_pose_from(signals: Signals, file: str, at: FloatArray, folder: Path, not
     Signals
         With one pose more.
     """
-    result = add_pose(signals, load_mesh(folder / file), at)
+    result = add_pose(signals, load_mesh(locate(file, folder)), at)
     m, before = len(result.shape.components), len(signals.shape.components)
     notes.append(
         f"the shape signal has {m} components" + (", one of them new" if m > before else " as before")

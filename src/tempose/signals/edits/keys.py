@@ -34,9 +34,15 @@ def number(value: Any, key: str) -> float:
     ValueError
         If it is none.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
         raise ValueError(f"{key} must be a number, got {value!r}")
-    return float(value)
+    try:
+        found = float(value)
+    except OverflowError:  # whole numbers of a file may have any length
+        found = math.inf
+    if not math.isfinite(found):
+        raise ValueError(f"{key} must be a finite number, got {found}")
+    return found
 
 
 def whole(value: Any, key: str) -> int:

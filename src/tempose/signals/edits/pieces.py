@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from tempose.signals.edits._frames import frame_seconds, frame_span
+from tempose.signals.edits._frames import check_length, frame_seconds, frame_span
 from tempose.signals.signals import Signals
 
 
@@ -78,11 +78,12 @@ def loop(signals: Signals, start: float, stop: float, times: int) -> Signals:
     Raises
     ------
     ValueError
-        If there are no such frames or `times` is not 1 or more.
+        If there are no such frames, `times` is not 1 or more, or so many that nobody plays them.
     """
     a, b = frame_span(signals, start, stop)
     if isinstance(times, bool) or times != int(times) or times < 1:
         raise ValueError(f"times must be 1 or more, got {times!r}")
+    check_length((signals.duration + (times - 1) * (b - a)) * signals.fps, "times", times)
     if times == 1:
         return signals
     return _spliced(signals, [(0.0, b), *[(a, b)] * (int(times) - 2), (a, signals.duration)])
@@ -112,6 +113,7 @@ def paste(signals: Signals, start: float, stop: float, at: float) -> Signals:
     """
     a, b = frame_span(signals, start, stop)
     c = frame_seconds(signals, at, "at")
+    check_length((signals.duration + b - a) * signals.fps, "to", stop)
     return _spliced(signals, [(0.0, c), (a, b), (c, signals.duration)])
 
 
@@ -162,6 +164,8 @@ def close_loop(signals: Signals, start: float, stop: float, insert: float | None
         If there are no such frames.
     """
     frame_span(signals, start, stop)
+    if insert is not None:
+        check_length(stop - start + insert, "insert", insert)
     close: Any = import_module("tempose.signals.loops").close_loop
     return close(signals, start, stop, insert=insert)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.curves import MonotoneMap, monotone_map
-from tempose.signals.edits._frames import frame_span
+from tempose.signals.edits._frames import check_length, frame_span
 from tempose.signals.signals import Signals
 from tempose.typing import FloatArray
 
@@ -52,6 +52,8 @@ def retime(
         pairs = as_floats(keys, "keys", ("K", 2)) / signals.fps * signals.rate
         places, values = pairs[:, 0], pairs[:, 1]
         name, unit = "keys", signals.rate / signals.fps
+    last = float(places.max(initial=0.0)) / signals.rate * signals.fps
+    check_length(last, f"the last frame of {name}", last)
     _check_retiming(places, values, signals, name, unit)
     values = np.clip(values, 0.0, signals.duration * signals.rate)
     return _played_through(signals, monotone_map(places, values))
@@ -110,6 +112,7 @@ def set_speed(signals: Signals, start: float, stop: float, factor: float, ease: 
     values = [a, *([a + ramp] if before else []), *([b - ramp] if after else []), b]
     speeds = [1.0 if before else factor, *[factor] * (len(values) - 2), 1.0 if after else factor]
     lengths = [2 * (v1 - v0) / (s0 + s1) for v0, v1, s0, s1 in zip(values, values[1:], speeds, speeds[1:])]
+    check_length(math.fsum(lengths) * signals.fps / signals.rate, "factor", factor)
     places = list(a + np.concatenate([[0.0], np.cumsum(lengths)]))
     if before:
         places, values, speeds = [0.0, *places], [0.0, *values], [1.0, *speeds]
@@ -142,6 +145,7 @@ def set_fps(signals: Signals, value: float) -> Signals:
     """
     if not 0 < value < math.inf:
         raise ValueError(f"value must be a positive number of frames a second, got {value!r}")
+    check_length(signals.duration * value, "value", value)
     return replace(signals, fps=float(value))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import glob
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,7 +58,7 @@ def load_poses(names: Sequence[str], folder: Path, what: str) -> PoseSet:
     names : sequence of str
         One file a pose; or a single name: a clip, a folder of frames or a glob.
     folder : Path
-        Where the names count from.
+        Where the names count from; what is not there is looked for in the working folder.
     what : str
         What the poses are, for messages.
 
@@ -71,9 +73,9 @@ def load_poses(names: Sequence[str], folder: Path, what: str) -> PoseSet:
         If a file cannot be read, or the poses are not of one mesh.
     """
     if len(names) == 1:
-        clip = load_clip(folder / names[0])
+        clip = load_clip(locate(names[0], folder))
         return PoseSet(np.asarray(clip.vertices, dtype=np.float64), clip.mesh)
-    meshes = [load_mesh(folder / name) for name in names]
+    meshes = [load_mesh(locate(name, folder)) for name in names]
     for name, mesh in zip(names, meshes):
         if not np.array_equal(mesh.faces, meshes[0].faces) or mesh.vertices.shape != meshes[0].vertices.shape:
             raise ValueError(
@@ -82,6 +84,35 @@ def load_poses(names: Sequence[str], folder: Path, what: str) -> PoseSet:
                 "poses must be of one mesh"
             )
     return PoseSet(np.array([mesh.vertices for mesh in meshes]), meshes[0])
+
+
+def locate(name: str, folder: Path) -> Path:
+    """Return where a file named in a list lies.
+
+    Parameters
+    ----------
+    name : str
+        A file, folder, glob or pattern of frames.
+    folder : Path
+        Of the list.
+
+    Returns
+    -------
+    Path
+        Beside the list; in the working folder where only that holds it.
+    """
+    beside = folder / name
+    if _matches(beside) or not _matches(Path(name)):
+        return beside
+    return Path(name)
+
+
+def _matches(path: Path) -> bool:
+    if path.exists():
+        return True
+    # ####, %04d: the frames of a sequence by their numbers
+    pattern = re.sub(r"#+|%\d*d", "*", str(path))
+    return next(glob.iglob(pattern), None) is not None
 
 
 def as_poses(poses: PoseSet | MeshClip | Sequence[Mesh], what: str) -> PoseSet:
