@@ -23,7 +23,7 @@ def main() -> None:
     print(f"frames are off by {model.report_['errors']['rms_percent']:.2f} % of the diagonal")
 
     signals = model.signals_
-    stride = find_loops(signals.coordinates(signals.times))[0]
+    stride = find_loops(signals.coordinates(signals.times), fps=signals.fps)[0]
     print(f"frames {stride.start} to {stride.stop} are a loop ({stride.grade})")
     edited = model.edited(
         [

@@ -68,15 +68,54 @@ def test_distance_is_the_plain_windowed_one():
         assert_allclose(loop.velocity, apart, rtol=1e-7)
 
 
+@pytest.mark.parametrize("times", [2, 5])
+def test_what_is_a_good_loop_does_not_depend_on_how_densely_it_was_captured(times):
+    one = find_loops(cyclic(np.arange(24), 13.3))[0]
+    dense = find_loops(cyclic(np.arange(24 * times) / times, 13.3), fps=24.0 * times)
+    assert dense[0].grade == one.grade == "good"
+    assert dense[0].period == pytest.approx(13.3 * times, abs=1)
+    assert min(loop.period for loop in dense) >= 6 * times
+    for i, a in enumerate(dense):
+        for b in dense[:i]:
+            assert max(abs(a.start - b.start), abs(a.stop - b.stop)) > 2 * times
+
+
+def test_the_seam_lies_where_least_moves():
+    # round and round, each time a little farther out, now fast, now slow
+    t = np.arange(50.0)
+    angle = 2 * np.pi * t / 16 + 0.6 * np.sin(2 * np.pi * t / 16)
+    X = (1 + 0.008 * t)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    speed = np.linalg.norm(np.gradient(X, axis=0), axis=1)
+    best = find_loops(X)[0]
+    assert best.period == 16 and best.grade == "good"
+    assert speed[best.start] < 0.6 * speed.mean()
+
+
+def test_a_coarse_clip_that_ends_as_it_begins_is_an_exact_loop():
+    X = cyclic(np.arange(11), 10.0)
+    best = find_loops(X)[0]
+    assert (best.start, best.stop, best.grade) == (0, 10, "exact")
+    # it comes back to the pose, but another way
+    angle = np.linspace(0, np.pi, 21)
+    drop = np.stack([np.sin(2 * angle), np.sin(angle)], axis=1)
+    whole = [loop for loop in find_loops(drop) if (loop.start, loop.stop) == (0, 20)]
+    assert whole and whole[0].grade == "needs a transition"
+
+
+def test_going_away_is_no_loop():
+    t = np.arange(30.0)
+    assert find_loops(np.stack([t, 0.02 * t**2], axis=1)) == []
+
+
 def test_grades():
     assert Loop(0, 8, 0.0, 0.0).grade == "exact"
     assert Loop(0, 8, 0.5, 0.4).grade == "good"
     assert Loop(0, 8, 0.5, 0.6).grade == Loop(0, 8, 0.8, 0.1).grade == "needs a transition"
 
 
-@pytest.mark.parametrize("options", [{"shortest": 0}, {"most": 0}])
-def test_counts_below_one_are_refused(options):
-    with pytest.raises(ValueError, match="must be 1 or more"):
+@pytest.mark.parametrize("options", [{"shortest": 0}, {"most": 0}, {"fps": 0.0}])
+def test_options_out_of_range_are_refused(options):
+    with pytest.raises(ValueError, match=r"must be (1 or more|positive)"):
         find_loops(np.zeros((9, 2)), **options)
 
 
@@ -112,3 +151,17 @@ def test_the_gallop_is_one_stride_twice(data_folder):
     periods = {loop.period: loop for loop in reversed(loops)}
     assert loops[0].period == 24 and loops[0].grade == "exact"
     assert periods[12].grade == "good"
+
+
+@pytest.mark.real
+def test_the_seam_of_two_unlike_strides_is_no_larger_than_the_median_step(data_folder):
+    import tempose
+
+    clip = tempose.load(data_folder("horse-gallop"))
+    signals = tempose.SignalModel(layout="mds", tolerance=0.1).fit(clip).signals_
+    found = find_loops(signals.coordinates(signals.times), fps=signals.fps)
+    loop = next(loop for loop in found if loop.period == 12)
+    closed = close_loop(signals, loop.start, loop.stop)
+    steps = np.linalg.norm(np.diff(closed.coordinates(closed.times), axis=0), axis=1)
+    assert len(steps) == 12
+    assert max(steps[0], steps[-1]) <= np.median(steps)

@@ -21,13 +21,21 @@ LoopInput = Annotated[
     str, typer.Argument(metavar="CLIP|MODEL", help="A moving mesh, or what `tempose signals fit` wrote.")
 ]
 Most = Annotated[int, typer.Option(metavar="N", min=1, help="How many are listed.")]
-Shortest = Annotated[int, typer.Option(metavar="FRAMES", min=2, help="Shorter loops are not looked for.")]
+Shortest = Annotated[
+    int | None,
+    typer.Option(
+        metavar="FRAMES",
+        min=2,
+        help="Shorter loops are not looked for; a quarter of a second if nothing is said.",
+        show_default=False,
+    ),
+]
 
 
 def loops(  # numpydoc ignore=PR01
     file: LoopInput,
     most: Most = 8,
-    shortest: Shortest = 6,
+    shortest: Shortest = None,
     up: InputUp = None,
     unit: InputUnit = None,
     fps: InputFps = None,
@@ -41,7 +49,7 @@ def loops(  # numpydoc ignore=PR01
 
     reading: dict[str, Any] = {"up": up, "unit": unit, "fps": fps, "group": group, "clip": clip}
     X, rate = _coordinates(file, reading)
-    found, period = find_loops(X, shortest, most), find_period(X)
+    found, period = find_loops(X, shortest, most, fps=rate), find_period(X)
     ticks = None if period is None else period.ticks
     if json:
         show_json({"period": ticks, "fps": rate, "loops": [_facts(loop) for loop in found]})
@@ -51,11 +59,12 @@ def loops(  # numpydoc ignore=PR01
         show_table(rows, ("from", "to", "frames", "seconds", "jump, steps", "change of speed", ""))
         entry = f'{{"op": "close_loop", "from": {found[0].start}, "to": {found[0].stop}}}'
         if found[0].grade == "needs a transition":
-            note(f"none comes back smoothly; {entry} would insert frames to bridge the jump")
+            note(f"none comes back smoothly; {entry} makes the best of the first")
         else:
             note(f"to keep the first, as an entry of an edit list: {entry}")
     else:
-        note(f"no loop of {shortest} frames or more: the clip never comes near a pose it has been in")
+        least = "a quarter of a second" if shortest is None else f"{shortest} frames"
+        note(f"no loop of {least} or more: the clip never comes near a pose it has been in")
     if ticks is not None:
         note(f"the clip repeats every {ticks:.4g} frames ({ticks / rate:.3g} s)")
 

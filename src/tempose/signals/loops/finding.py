@@ -9,7 +9,16 @@ import numpy as np
 from tempose._validate import as_floats
 from tempose.typing import FloatArray, IntArray
 
-EXACT, GOOD, GOOD_VELOCITY = 0.01, 0.7, 0.5
+EXACT, GOOD, GOOD_VELOCITY = 0.01, 0.75, 0.5
+FILM = 24.0
+"""Frames per second up to which a step is one frame."""
+
+SHORTEST = 6
+"""Steps that a loop takes at least, if nothing is said."""
+
+QUIET = 1.0
+"""Weight of the speed at the seam, in mean speeds, beside distance and change of velocity."""
+
 _SIDE = 2  # frames on either side that are compared, too
 
 
@@ -22,7 +31,7 @@ class Loop:
     stop: int
     """The frame that the first one stands for."""
     distance: float
-    """How far the two are apart, with the frames beside them, in mean steps from frame to frame."""
+    """How far the two are apart, with the frames beside them, in mean steps."""
     velocity: float
     """How far their velocities are apart, in mean speeds."""
 
@@ -33,7 +42,7 @@ class Loop:
 
     @property
     def cost(self) -> float:
-        """What the loops are sorted by."""
+        """How badly it comes back."""
         return self.distance + self.velocity
 
     @property
@@ -45,30 +54,40 @@ class Loop:
         return "good" if good else "needs a transition"
 
 
-def find_loops(X: FloatArray, shortest: int = 6, most: int = 8) -> list[Loop]:
+def find_loops(X: FloatArray, shortest: int | None = None, most: int = 8, *, fps: float = FILM) -> list[Loop]:
     """Find loops in a clip.
 
     Parameters
     ----------
     X : (n, m) float
         Shape coordinates of the frames, without where the body is if it travels.
-    shortest : int, default 6
-        Least number of frames in a loop.
+    shortest : int, optional
+        Least number of frames in a loop; None means a quarter of a second, 6 at 24 frames per second.
     most : int, default 8
         How many to return.
+    fps : float, default 24
+        Frames per second. Above 24 a step is the mean motion in 1/24 s, so that what is a good loop does not
+        depend on how densely it was captured.
 
     Returns
     -------
     list of Loop
-        The best first; of loops that begin and end within two frames of each other only the best. A part of
-        the clip in which hardly anything moves is none.
+        The best grade first, in it the least sum of distance, velocity and speed at the seam, since a seam is
+        seen least where least moves; of loops that begin and end within two steps of each other only the
+        best. A part of the clip in which
+        hardly anything moves is none, nor is one that ends farther from its begin than its poses lie from
+        their mean.
 
     Raises
     ------
     ValueError
-        If `shortest` or `most` is less than 1.
+        If `shortest` or `most` is less than 1, or `fps` is not positive.
     """
     X = as_floats(X, "X", ("n", "m"))
+    if not fps > 0:
+        raise ValueError(f"fps must be positive, got {fps}")
+    wide = max(1, round(fps / FILM))
+    shortest = SHORTEST * wide if shortest is None else shortest
     if shortest < 1 or most < 1:
         raise ValueError(f"shortest and most must be 1 or more, got {shortest} and {most}")
     n = len(X)
@@ -77,27 +96,32 @@ def find_loops(X: FloatArray, shortest: int = 6, most: int = 8) -> list[Loop]:
     X = _reduced(X)
     # at the ends of the clip too as exact as inside, for clips that end where they begin
     velocity = np.gradient(X, axis=0, edge_order=2 if n > 2 else 1)
-    step = float(np.linalg.norm(np.diff(X, axis=0), axis=1).mean())
+    step = wide * float(np.linalg.norm(np.diff(X, axis=0), axis=1).mean())
     speed = float(np.linalg.norm(velocity, axis=1).mean())
     if step == 0 or speed == 0:
         return []
     apart = np.sqrt(_windowed(_squared(X))) / step
     turned = np.sqrt(_squared(velocity)) / speed
+    turned[0, -1] = min(turned[0, -1], _jolt(X) / speed + apart[0, -1])
     start, stop = np.triu_indices(n, shortest)
-    travels = _spread(X, start, stop) > step
-    # of equally good loops the one whose seam lies where least moves
-    quiet = 1e-3 * np.linalg.norm(velocity, axis=1) / speed
-    cost = (apart + turned)[start, stop] + quiet[start]
-    order = np.argsort(cost, kind="stable")
-    return _distinct(
-        [
-            Loop(
-                int(start[i]), int(stop[i]), float(apart[start[i], stop[i]]), float(turned[start[i], stop[i]])
-            )
-            for i in order[travels[order]][: 400 * most]
-        ],
-        most,
-    )
+    one, other = apart[start, stop], turned[start, stop]
+    travels = _spread(X, start, stop) > step * np.maximum(1.0, one)
+    # twins leave no seam: among them speed only settles which is named
+    quiet = np.linalg.norm(velocity, axis=1) / speed
+    exact = (one < EXACT) & (other < EXACT)
+    cost = one + other + np.where(exact, 1e-3, QUIET) * quiet[start]
+    good = (one < GOOD) & (other < GOOD_VELOCITY)
+    order = np.lexsort((cost, ~good, ~exact))
+    order = order[travels[order]][: 400 * most * wide]
+    found = [Loop(int(start[i]), int(stop[i]), float(one[i]), float(other[i])) for i in order]
+    return _distinct(found, most, 2 * wide)
+
+
+def _jolt(X: FloatArray) -> float:
+    # by how much velocity changes across the seam of the whole clip beyond what it does inside: one-sided
+    # velocities at its ends tell less
+    bends = np.linalg.norm(np.diff(np.concatenate([X, X[1:2]]), 2, axis=0), axis=1)
+    return max(0.0, float(bends[-1] - bends[:-1].max(initial=0.0)))
 
 
 def _reduced(X: FloatArray) -> FloatArray:
@@ -137,10 +161,10 @@ def _spread(X: FloatArray, start: IntArray, stop: IntArray) -> FloatArray:
     return np.sqrt(np.maximum((squares[stop] - squares[start]) / count - np.square(mean).sum(1), 0.0))
 
 
-def _distinct(loops: list[Loop], most: int) -> list[Loop]:
+def _distinct(loops: list[Loop], most: int, beside: int) -> list[Loop]:
     kept: list[Loop] = []
     for loop in loops:
-        if all(max(abs(loop.start - k.start), abs(loop.stop - k.stop)) > 2 for k in kept):
+        if all(max(abs(loop.start - k.start), abs(loop.stop - k.stop)) > beside for k in kept):
             kept.append(loop)
         if len(kept) == most:
             break
