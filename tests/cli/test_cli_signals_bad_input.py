@@ -13,7 +13,7 @@ import pytest
 
 import tempose
 from tempose.clips import Mesh, MeshClip
-from tempose.models import save_model
+from tempose.models import load_model, save_model
 from tempose.signals import SignalModel
 
 Run = Callable[..., Any]
@@ -180,6 +180,12 @@ def bad_models(folder: Path) -> dict[str, str]:
     Path("text.tempose").write_text("hello")
     save_model("other.tempose", "rig", {"a": np.zeros(3)}, {})
     save_model("bare.tempose", "signals", {"a": np.zeros(3)}, {})
+    arrays, header = load_model(folder / "clip.tempose", "signals")
+    options = {key: header[key] for key in ("options", "report", "edits", "tree")}
+    emptied = {"signals.shape.space.0": np.zeros(0)}
+    spoilt = {"signals.pose.weights": np.full_like(arrays["signals.pose.weights"], np.nan)}
+    save_model("emptied.tempose", "signals", arrays | emptied, options)
+    save_model("spoilt.tempose", "signals", arrays | spoilt, options)
     newer = whole.replace(b'\\"format_version\\": 1', b'\\"format_version\\": 9')
     assert newer != whole
     Path("newer.tempose").write_bytes(newer)
@@ -189,11 +195,15 @@ def bad_models(folder: Path) -> dict[str, str]:
         "text": "text",
         "other": "rig",
         "bare": "bare",
+        "emptied": "do not fit together",
+        "spoilt": "must be finite",
         "newer": "newer",
     }
 
 
-@pytest.mark.parametrize("kind", ["short", "empty", "text", "other", "bare", "newer", "missing"])
+@pytest.mark.parametrize(
+    "kind", ["short", "empty", "text", "other", "bare", "emptied", "spoilt", "newer", "missing"]
+)
 def test_files_that_are_no_model(run: Run, job: Path, kind: str) -> None:
     says = bad_models(job).get(kind, "missing")
     Path("edit.json").write_text('{"operations": []}')
@@ -253,6 +263,14 @@ def test_times_that_are_none(run: Run, job: Path, text: str, says: str) -> None:
     Path("times.txt").write_text(text)
     line = refused(run, "signals", "sample", "clip.tempose", "-o", "out/a.npz", "--times", "times.txt")
     assert "times.txt" in line and says in line
+
+
+@pytest.mark.parametrize("fps", ["1e300", "1e13", "2e7"])
+def test_rates_that_nothing_can_hold(run: Run, job: Path, fps: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    usage = shutil.disk_usage(".")
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=1 << 28))
+    line = refused(run, "signals", "sample", "clip.tempose", "-o", "out/a.npz", "--fps", fps)
+    assert "GB" in line and ("fps" in line or "fewer frames" in line)
 
 
 def test_bytes_as_times(run: Run, job: Path) -> None:

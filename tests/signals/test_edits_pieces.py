@@ -11,7 +11,7 @@ from model_clips import CORNERS, clip_of, swinging
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tempose.signals import Signals
-from tempose.signals.edits import cut, keep, loop, paste, reverse, set_speed
+from tempose.signals.edits import apply_edits, cut, keep, loop, paste, reverse, set_speed
 
 LONG = signals_of(swinging(80, 17.3), k=50, l=40)
 SEAM = 24
@@ -119,3 +119,27 @@ def test_cutting_everything_and_looping_never_are_refused() -> None:
     for times in (0, -1, 1.5, True):
         with pytest.raises(ValueError, match="times must be 1 or more"):
             loop(LONG, 3, 9, times)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("times", [2, 3])
+def test_a_stride_that_ends_with_the_clip_repeats_frame_by_frame(times: int) -> None:
+    """Frame 24 of two strides of 12 frames is the first of a third: none was captured, none is left out."""
+    w = 2 * np.pi * np.arange(24)[:, None, None] / 12
+    a = 0.2 * np.random.default_rng(3).normal(size=(2, 4, 3))
+    signals = signals_of(clip_of(CORNERS + a[0] * np.sin(w) + a[1] * np.cos(w)), k=26, l=12)
+    once = played(signals)
+    looped = loop(signals, 12, 24, times)
+    again = played(looped)
+    assert len(again) == 24 + 12 * (times - 1)
+    assert_allclose(again[:24], once, atol=1e-9)
+    for i in range(1, times):
+        assert_allclose(again[24 + 12 * (i - 1) : 24 + 12 * i], once[12:], atol=1e-9)
+    steps = np.linalg.norm(np.diff(again, axis=0).reshape(len(again) - 1, -1), axis=1)
+    assert steps.max() <= 1.01 * np.linalg.norm(np.diff(once, axis=0).reshape(23, -1), axis=1).max()
+
+
+def test_a_part_of_a_frame_cannot_be_inserted() -> None:
+    entry = {"op": "close_loop", "from": 5, "to": 30, "insert": 2.5}
+    with pytest.raises(ValueError, match=r"insert must be a whole number, got 2\.5"):
+        apply_edits(LONG, [entry])
+    assert apply_edits(LONG, [{**entry, "insert": 2}]).duration * LONG.fps == pytest.approx(28)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -32,10 +33,22 @@ def room_for_frames(n_frames: int, n_vertices: int, out: Path) -> Generator[Path
     ------
     Path or None
         The folder; None for a clip that memory can hold.
+
+    Raises
+    ------
+    ValueError
+        If the disk has no room for them.
     """
     if 12 * n_frames * n_vertices <= IN_MEMORY:
         yield None
         return
+    free = shutil.disk_usage(out.parent).free
+    # once while they are made and once in the output
+    if 24 * n_frames * n_vertices > free:
+        raise ValueError(
+            f"{out}: {n_frames} frames of {n_vertices} vertices need {24e-9 * n_frames * n_vertices:.3g} GB of "
+            f"disk, {free / 1e9:.3g} GB are free; ask for fewer frames, or write elsewhere"
+        )
     prefix = f".{out.name}."
     with tempfile.TemporaryDirectory(prefix=prefix, suffix=".part", dir=out.parent) as folder:
         yield Path(folder)

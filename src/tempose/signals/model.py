@@ -15,6 +15,7 @@ from tempose.clips.source import Source
 from tempose.signals.fit.clip import fit_clip
 from tempose.signals.fit.options import FitOptions
 from tempose.signals.report.report import fit_report
+from tempose.signals.room import check_room
 from tempose.signals.sampling import sample, sample_blocks
 from tempose.signals.saving.model_file import read_signal_model, write_signal_model
 from tempose.signals.signals import Signals
@@ -237,13 +238,14 @@ class SignalModel:
         Raises
         ------
         ValueError
-            If `fps` is not positive.
+            If `fps` is not positive, or so high that memory cannot hold the times.
         """
         signals = self._fitted()
         if fps is None:
             return signals.times
         if not 0 < fps < float("inf"):
             raise ValueError(f"fps must be positive, got {fps}")
+        check_room(8e-9 * signals.duration * fps, f"times at fps = {fps:.6g}", "give a lower fps")
         return replace(signals, fps=float(fps)).times
 
     def clip(self, fps: float | None = None, times: FloatArray | None = None, *, out: Any = None) -> MeshClip:

@@ -27,4 +27,4 @@ def check_room(gigabytes: float, what: str, instead: str) -> None:
     except (AttributeError, OSError, ValueError):  # a system that does not say
         return
     if gigabytes > machine:
-        raise ValueError(f"{what} take {gigabytes:.0f} GB, more than this machine has; {instead}")
+        raise ValueError(f"{what} take {gigabytes:.3g} GB, more than this machine has; {instead}")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
-
+from tempose.signals import loops
 from tempose.signals.edits._frames import check_length, frame_seconds, frame_span
 from tempose.signals.signals import Signals
+from tempose.signals.time.splice import Join, splice
 
 
 def cut(signals: Signals, start: float, stop: float) -> Signals:
@@ -66,7 +65,8 @@ def loop(signals: Signals, start: float, stop: float, times: int) -> Signals:
     signals : Signals
         What is edited; stays as it is.
     start, stop : float
-        Frames from 0: `stop` shows, or nearly, what `start` does.
+        Frames from 0: `stop` shows, or nearly, what `start` does. It may be the frame after the last one,
+        which nothing has captured: then all frames from `start` on are played again.
     times : int
         How often in all; 1 changes nothing.
 
@@ -80,13 +80,16 @@ def loop(signals: Signals, start: float, stop: float, times: int) -> Signals:
     ValueError
         If there are no such frames, `times` is not 1 or more, or so many that nobody plays them.
     """
-    a, b = frame_span(signals, start, stop)
+    last = signals.duration * signals.fps
+    whole = not isinstance(stop, bool) and isinstance(stop, int | float) and abs(stop - last - 1) < 1e-6
+    a, b = frame_span(signals, start, last if whole else stop)
     if isinstance(times, bool) or times != int(times) or times < 1:
         raise ValueError(f"times must be 1 or more, got {times!r}")
-    check_length((signals.duration + (times - 1) * (b - a)) * signals.fps, "times", times)
+    check_length(last + (times - 1) * (b - a) * signals.fps, "times", times)
     if times == 1:
         return signals
-    return _spliced(signals, [(0.0, b), *[(a, b)] * (int(times) - 2), (a, signals.duration)])
+    pieces = [(0.0, b), *[(a, b)] * (int(times) - 2), (a, signals.duration)]
+    return _spliced(signals, pieces, joins=Join(apart=True) if whole else None)
 
 
 def paste(signals: Signals, start: float, stop: float, at: float) -> Signals:
@@ -141,7 +144,7 @@ def reverse(signals: Signals, start: float, stop: float) -> Signals:
     return _spliced(signals, [(0.0, a), (b, a), (b, signals.duration)])
 
 
-def close_loop(signals: Signals, start: float, stop: float, insert: float | None = None) -> Signals:
+def close_loop(signals: Signals, start: float, stop: float, insert: int | None = None) -> Signals:
     """Keep a part that, played again and again, has no seam.
 
     Parameters
@@ -150,7 +153,7 @@ def close_loop(signals: Signals, start: float, stop: float, insert: float | None
         What is edited; stays as it is.
     start, stop : float
         Frames from 0: where the loop begins and where it begins anew.
-    insert : float, optional
+    insert : int, optional
         Frames to insert between end and begin; None lets the distance between the two decide.
 
     Returns
@@ -166,14 +169,14 @@ def close_loop(signals: Signals, start: float, stop: float, insert: float | None
     frame_span(signals, start, stop)
     if insert is not None:
         check_length(stop - start + insert, "insert", insert)
-    close: Any = import_module("tempose.signals.loops").close_loop
-    return close(signals, start, stop, insert=insert)
+    return loops.close_loop(signals, start, stop, insert)
 
 
-def _spliced(signals: Signals, pieces: list[tuple[float, float]], empty: str = "") -> Signals:
+def _spliced(
+    signals: Signals, pieces: list[tuple[float, float]], empty: str = "", joins: Join | None = None
+) -> Signals:
     short = 1e-9 * signals.duration
     wanted = [(a, b) for a, b in pieces if abs(b - a) > short]
     if not wanted:
         raise ValueError(empty)
-    splice: Any = import_module("tempose.signals.time.splice").splice
-    return splice(signals, wanted)
+    return splice(signals, wanted, joins)

@@ -51,9 +51,12 @@ class FitOptions:
             )
         if self.tolerance is not None and None not in (self.k, self.l, self.m):
             raise ValueError("give a tolerance or all of k, l and m, not both: nothing is left to choose")
-        for name, value, low in (("k", self.k, 4), ("l", self.l, 3), ("m", self.m, 0)):
+        ranges = (("k", self.k, 4, "T + 2"), ("l", self.l, 3, "T"), ("m", self.m, 0, "T - 1"))
+        for name, value, low, high in ranges:
             if value is not None and (not _whole(value) or value < low):
-                raise ValueError(f"{name} must be a whole number from {low} on, got {value!r}")
+                raise ValueError(
+                    f"{name} must be a whole number from {low} to {high} for a clip of T frames, got {value!r}"
+                )
         if not (self.period in ("auto", None) or (_number(self.period) and float(self.period or 0) > 1)):
             raise ValueError(f"period must be 'auto', None or more than 1 frame, got {self.period!r}")
         if not _whole(self.window) or self.window < 16:
@@ -91,7 +94,9 @@ class FitOptions:
                 f"l must be from 3 to {4 * T - 3} for {T} frames between which g is fitted, got {self.l}"
             )
         if self.period not in (None, "auto") and float(self.period) >= T - 1:
-            raise ValueError(f"period must be below {T - 1} frames for a clip of {T}, got {self.period}")
+            raise ValueError(
+                f"period must be below {T - 1} frames for a clip of {T}, got {self.period}; leave it to 'auto'"
+            )
         top = T - 1 if largest_m is None else largest_m
         limits = (("k", self.k, 4, T + 2), ("l", self.l, 3, max(T, 3)), ("m", self.m, 0, top))
         for name, value, low, high in limits:

@@ -70,13 +70,16 @@ def left_out_errors(
     if len(kept) < 3 or len(between) == 0:
         return {}
     part = select_frames(clip, 0, None, every)
-    fitted = SignalModel(**_options(model, len(kept))).fit(part, progress=progress)
+    fitted = SignalModel(**_options(model, len(kept), every)).fit(part, progress=progress)
     ours = fitted.sample(between / clip.fps, dtype=np.float64)
     return {"ours": _errors(clip, between, ours), **_interpolated(clip, kept, between)}
 
 
-def _options(model: SignalModel, T: int) -> dict[str, Any]:
+def _options(model: SignalModel, T: int, every: int) -> dict[str, Any]:
     given = asdict(model.options)
+    if given["period"] not in (None, "auto"):
+        period = given["period"] / every
+        given["period"] = period if 1 < period < T - 1 else None
     if all(given[name] is None for name in ("tolerance", "k", "l", "m")):
         return given | {"k": T + 2, "l": T, "m": T - 1}
     for name, most in (("k", T + 2), ("l", T), ("m", T - 1)):

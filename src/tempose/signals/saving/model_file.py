@@ -82,6 +82,9 @@ def read_signal_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
     """
     arrays, header = load_model(path, KIND)
     try:
+        for name, array in arrays.items():
+            if array.dtype.kind == "f" and not np.isfinite(array).all():
+                raise ValueError(f"{name} must be finite")
         options = asdict(FitOptions(**header["options"]))
         state = {name: from_arrays(header["tree"][name], arrays) for name in _PARTS}
         for name, expected in _PARTS.items():
@@ -91,7 +94,7 @@ def read_signal_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
         if not (0 < signals.fps < np.inf and 0 < signals.rate < np.inf):
             raise ValueError(f"fps and rate must be positive, got {signals.fps} and {signals.rate}")
         state["report_"], state["edits_"] = dict(header["report"]), tuple(header["edits"])
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
+    except (AttributeError, LookupError, OverflowError, TypeError, ValueError) as error:
         raise ValueError(f"{path}: a model of signals whose parts do not fit together: {error}") from None
     return options, state
 

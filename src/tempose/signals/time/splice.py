@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from tempose.curves import MonotoneMap, Seam, splice_spline
 from tempose.signals.placement import splice_placement
 from tempose.signals.signals import Signals
 from tempose.signals.time.clocks import splice_map
 from tempose.signals.time.origin import splice_origin
 from tempose.signals.time.signal import TimeSignal
-from tempose.typing import FloatArray
 
 Piece = tuple[float, float]
 
@@ -28,6 +25,8 @@ class Join:
     """...or this many new frames are put between the two, and no other frame changes..."""
     fade: float = 0.0
     """...or over this many frames both are played and crossfaded, where the clip goes on long enough."""
+    apart: bool = False
+    """Whether the two ends are a frame apart instead of one moment, whatever is inserted."""
 
 
 def splice(
@@ -73,7 +72,7 @@ def splice(
     seams = [
         Seam(
             j.half_life * beats_a_frame,
-            (j.insert + 1) * beats_a_frame * (j.insert > 0),
+            (j.insert + 1) * beats_a_frame * (j.insert > 0 or j.apart),
             j.fade * beats_a_frame,
         )
         for j in joins
@@ -113,7 +112,7 @@ def _merged(pieces: list[Piece], joins: list[Join], room: float) -> tuple[list[P
     for i, (a, b) in enumerate(pieces[1:]):
         before = out[-1]
         goes_on = abs(before[1] - a) <= room and (before[1] > before[0]) == (b > a)
-        if goes_on and not joins[i].insert:
+        if goes_on and not joins[i].insert and not joins[i].apart:
             out[-1] = (before[0], b)
         else:
             kept.append(joins[i])
@@ -134,22 +133,3 @@ def _splice_ticks(signals: Signals, pieces: list[Piece], seams: list[Seam], clos
         placement = splice_placement(signals.placement, pieces, seams, closed=closed)
     origin = splice_origin(signals.origin, pieces, [seam.gap for seam in seams])
     return replace(signals, time=time, path=path, placement=placement, origin=origin)
-
-
-def frames_as_pieces(signals: Signals, pieces: Sequence[tuple[float, float]]) -> list[Piece]:
-    """Return pieces given in frames as pieces in seconds.
-
-    Parameters
-    ----------
-    signals : Signals
-        The clip.
-    pieces : sequence of (first, last)
-        Frames of what is played, from 0.
-
-    Returns
-    -------
-    list of (float, float)
-        Seconds.
-    """
-    frames: FloatArray = np.asarray(pieces, dtype=np.float64) / signals.fps
-    return [(float(a), float(b)) for a, b in frames]
