@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tempose.curves import interpolating_spline, monotone_map
 from tempose.signals import Signals
 from tempose.signals.time.origin import Origin, splice_origin
-from tempose.signals.time.splice import Join, frames_as_pieces, splice
+from tempose.signals.time.splice import Join, splice
 
 FPS = 24.0
 
@@ -34,6 +34,10 @@ def edited() -> Signals:
         monotone_map([0, 10, 18, 40.0], [0, 9, 9, 31.0]),
     )
     return replace(s, time=replace(s.time, curve=s.time.curve.with_controls(controls)), retimings=clocks)
+
+
+def frames_as_pieces(signals: Signals, pieces: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    return [(a / signals.fps, b / signals.fps) for a, b in pieces]
 
 
 def seen(signals: Signals, first: int = 0, last: int | None = None) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from tempose.geometry import vertex_areas, vertex_components
+from tempose.rotations import polar_rotation
 from tempose.typing import FloatArray, IntArray
 
 _ANCHOR = 24
@@ -134,6 +135,4 @@ def rigid_fit(P: FloatArray, Q: FloatArray, weights: FloatArray) -> tuple[FloatA
     """
     w = weights / weights.sum()
     c, c0 = w @ Q, w @ P
-    U, _, Vt = np.linalg.svd((Q - c).T @ ((P - c0) * w[:, None]))
-    U[:, 2] *= 1.0 if np.linalg.det(U @ Vt) > 0 else -1.0
-    return U @ Vt, c, c0
+    return polar_rotation((Q - c).T @ ((P - c0) * w[:, None])), c, c0

@@ -79,7 +79,7 @@ OPERATIONS: dict[str, Operation] = {
     ),
     "loop": Operation(loop, {**_SPAN, "times": check.whole}, "play a part so many times in all"),
     "close_loop": Operation(
-        close_loop, _SPAN, "keep a part that repeats without a seam", {"insert": check.number}
+        close_loop, _SPAN, "keep a part that repeats without a seam", {"insert": check.whole}
     ),
     "cut": Operation(cut, _SPAN, "take a part out"),
     "keep": Operation(keep, _SPAN, "keep a part, drop the rest"),
