@@ -9,13 +9,13 @@ from model_clips import CORNERS, clip_of, repeating, swinging, wandering
 from tempose.signals import SignalModel
 
 BAD = [
-    ({"k": 3}, "k must be a whole number from 4 on, got 3"),
+    ({"k": 3}, "k must be a whole number from 4 to T . 2 .*, got 3"),
     ({"k": 15}, "k must be from 4 to 14 for a clip of 12 frames, got 15"),
     ({"k": 5.5}, "k must be a whole number"),
     ({"k": True}, "k must be a whole number"),
-    ({"l": 2}, "l must be a whole number from 3 on, got 2"),
+    ({"l": 2}, "l must be a whole number from 3 to T .*, got 2"),
     ({"l": 13}, "l must be from 3 to 12 for a clip of 12 frames, got 13"),
-    ({"m": -1}, "m must be a whole number from 0 on, got -1"),
+    ({"m": -1}, "m must be a whole number from 0 to T - 1 .*, got -1"),
     ({"m": 12}, "m must be from 0 to 11 for a clip of 12 frames, got 12"),
     ({"tolerance": 0}, "tolerance must be positive.*k = T \\+ 2, l = T and m = T - 1"),
     ({"tolerance": -1.0}, "tolerance must be positive"),

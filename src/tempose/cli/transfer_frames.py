@@ -43,11 +43,11 @@ def room_for_frames(n_frames: int, n_vertices: int, out: Path) -> Generator[Path
         yield None
         return
     free = shutil.disk_usage(out.parent).free
-    # once while they are made and once in the output
-    if 24 * n_frames * n_vertices > free:
+    wanted = 24 * n_frames * n_vertices  # once while they are made and once in the output
+    if wanted > free:
         raise ValueError(
-            f"{out}: {n_frames} frames of {n_vertices} vertices need {24e-9 * n_frames * n_vertices:.3g} GB of "
-            f"disk, {free / 1e9:.3g} GB are free; ask for fewer frames, or write elsewhere"
+            f"{out}: {n_frames} frames of {n_vertices} vertices need {wanted / 1e9:.3g} GB of disk, "
+            f"{free / 1e9:.3g} GB are free; ask for fewer frames, or write elsewhere"
         )
     prefix = f".{out.name}."
     with tempfile.TemporaryDirectory(prefix=prefix, suffix=".part", dir=out.parent) as folder:

@@ -55,7 +55,8 @@ class FitOptions:
         for name, value, low, high in ranges:
             if value is not None and (not _whole(value) or value < low):
                 raise ValueError(
-                    f"{name} must be a whole number from {low} to {high} for a clip of T frames, got {value!r}"
+                    f"{name} must be a whole number from {low} to {high} for a clip of T frames, "
+                    f"got {value!r}"
                 )
         if not (self.period in ("auto", None) or (_number(self.period) and float(self.period or 0) > 1)):
             raise ValueError(f"period must be 'auto', None or more than 1 frame, got {self.period!r}")
@@ -95,7 +96,8 @@ class FitOptions:
             )
         if self.period not in (None, "auto") and float(self.period) >= T - 1:
             raise ValueError(
-                f"period must be below {T - 1} frames for a clip of {T}, got {self.period}; leave it to 'auto'"
+                f"period must be below {T - 1} frames for a clip of {T}, got {self.period}; "
+                "leave it to 'auto'"
             )
         top = T - 1 if largest_m is None else largest_m
         limits = (("k", self.k, 4, T + 2), ("l", self.l, 3, max(T, 3)), ("m", self.m, 0, top))
