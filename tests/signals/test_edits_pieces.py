@@ -143,10 +143,3 @@ def test_a_part_of_a_frame_cannot_be_inserted() -> None:
     with pytest.raises(ValueError, match=r"insert must be a whole number, got 2\.5"):
         apply_edits(LONG, [entry])
     assert apply_edits(LONG, [{**entry, "insert": 2}]).duration * LONG.fps == pytest.approx(28)
-
-
-def test_a_part_of_a_frame_cannot_be_inserted() -> None:
-    entry = {"op": "close_loop", "from": 5, "to": 30, "insert": 2.5}
-    with pytest.raises(ValueError, match=r"insert must be a whole number, got 2\.5"):
-        apply_edits(LONG, [entry])
-    assert apply_edits(LONG, [{**entry, "insert": 2}]).duration * LONG.fps == pytest.approx(28)
