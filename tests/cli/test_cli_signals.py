@@ -213,6 +213,19 @@ def test_plots_and_grid(run: Run, job: Path) -> None:
     assert Path("grid.png").read_bytes()[:4] == b"\x89PNG"
 
 
+def test_placement_is_advised_for_a_body_that_travels(run: Run, job: Path) -> None:
+    clip = tempose.load("clip.npz")
+    along = np.arange(T)[:, None, None] * np.array([0.0, 0.0, 0.4], np.float32)
+    tempose.save("walk.npz", MeshClip(clip.vertices + along, clip.mesh, FPS))
+    for name, options, advised in (
+        ("walk.npz", (), True),
+        ("walk.npz", ("--placement",), False),
+        ("clip.npz", (), False),
+    ):
+        ran = run("signals", "fit", name, "-o", "w.tempose", *options)
+        assert ran.code == 0 and ("--placement" in ran.err) == advised
+
+
 def test_loops_of_a_clip_and_of_its_model(run: Run, job: Path) -> None:
     clip = tempose.load("clip.npz")
     twice = np.concatenate([clip.vertices, clip.vertices, clip.vertices])

@@ -138,6 +138,21 @@ def test_poses_of_the_plane_are_those_of_the_model(model: SignalModel) -> None:
     assert_allclose(poses_at(model.signals_, P), model.pose_at(P, dtype=np.float64), atol=1e-12)
 
 
+def test_the_plane_reaches_to_controls_outside_the_curve(model: SignalModel) -> None:
+    s = model.signals_
+    x0, _, x1, y1 = used_region(s, margin=0.0)
+    side = x1 - x0
+    controls = s.time.curve.controls.copy()
+    controls[1] = (x1 + 0.4 * side, y1)
+    moved = replace(s, time=replace(s.time, curve=s.time.curve.with_controls(controls)))
+    seen = used_region(moved, controls=True)
+    assert seen[0] < controls[:, 0].min() and seen[2] > controls[:, 0].max()
+    assert used_region(moved)[2] < seen[2]
+    controls[1] = (x1 + 9 * side, y1)
+    far = replace(s, time=replace(s.time, unedited=s.time.curve, curve=s.time.curve.with_controls(controls)))
+    assert used_region(far, controls=True)[2] < controls[1, 0]
+
+
 def test_a_smaller_region_is_shown_finer(model: SignalModel, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(thumbnails, "FINE", 1)
     x0, y0, x1, y1 = used_region(model.signals_)

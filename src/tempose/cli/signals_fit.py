@@ -62,6 +62,8 @@ def fit(  # numpydoc ignore=PR01
         raise ValueError(f"--held-out must be 2 or more frames, or 0 to measure nothing, got {held_out}")
     reading: dict[str, Any] = {"up": up, "unit": unit, "fps": fps, "group": group, "clip": clip}
     source = _load(clip_file, start, stop, step, reading | {"topology": topology})
+    if not placement:
+        _advise_placement(source)
     poses = _load_examples(examples, source, up, unit)
     loaded = time.perf_counter()
     with progress_bar() as progress:
@@ -93,6 +95,16 @@ def _load(
     if (start, stop, step) == (None, None, None):
         return source
     return select_frames(source, start or 0, stop, 1 if step is None else step)
+
+
+def _advise_placement(clip: MeshClip) -> None:
+    from tempose.signals.loops.of_clip import travels
+
+    if travels(clip):
+        note(
+            "note: the body travels, and where it stands is part of every pose; with --placement it is kept "
+            "apart, and loops go on from where they end"
+        )
 
 
 def _load_examples(paths: list[str] | None, clip: MeshClip, up: str | None, unit: str | None) -> Any:

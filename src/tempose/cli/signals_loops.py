@@ -65,6 +65,8 @@ def loops(  # numpydoc ignore=PR01
     else:
         least = "a quarter of a second" if shortest is None else f"{shortest} frames"
         note(f"no loop of {least} or more: the clip never comes near a pose it has been in")
+    if not found or found[0].grade == "needs a transition":
+        _advise_placement(file)
     if ticks is not None:
         note(f"the clip repeats every {ticks:.4g} frames ({ticks / rate:.3g} s)")
 
@@ -86,6 +88,11 @@ def _coordinates(file: str, reading: dict[str, Any]) -> tuple[FloatArray, float]
             return clip_coordinates(source, placement, progress), source.fps
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
+
+
+def _advise_placement(file: str) -> None:
+    if Path(file).suffix.lower() == ".tempose" and load_signals(Path(file)).signals_.placement is None:
+        note("where the body stands was compared, too; if it travels, fit with --placement")
 
 
 def _facts(loop: Loop) -> dict[str, Any]:

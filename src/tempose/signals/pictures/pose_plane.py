@@ -52,7 +52,7 @@ def draw_pose_plane(
         For `tempose.render.save_drawing`.
     """
     tone = theme_named(theme)
-    graph = plane_graph(used_region(signals), tone)
+    graph = plane_graph(used_region(signals, controls=True), tone)
     draw_plane_axes(graph, title)
     seconds, curve = curve_points(signals)
     line = graph.place(curve[:, 0], curve[:, 1])

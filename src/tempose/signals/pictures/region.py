@@ -14,10 +14,12 @@ Region = tuple[float, float, float, float]
 """Least x, least y, greatest x, greatest y, in units of the pose plane."""
 WARNING = {"dark": "#e9c64b", "light": "#9a7400"}
 """Colour of what needs care, by the name of the theme."""
+ROUND_CONTROLS = 0.06
+"""Share of the longer side that is left round a control point."""
 _LONGEST, _MARGINS = 760.0, (52.0, 24.0, 24.0, 78.0)
 
 
-def used_region(signals: Signals, margin: float = 0.16) -> Region:
+def used_region(signals: Signals, margin: float = 0.16, *, controls: bool = False) -> Region:
     """Return the part of the plane that the curve, the frames and the sites fill.
 
     Parameters
@@ -26,6 +28,8 @@ def used_region(signals: Signals, margin: float = 0.16) -> Region:
         A clip.
     margin : float, default 0.16
         What is added on each side, as a share of the longer side.
+    controls : bool, default False
+        Whether control points count, too, that lie outside by no more than half the longer side.
 
     Returns
     -------
@@ -35,6 +39,12 @@ def used_region(signals: Signals, margin: float = 0.16) -> Region:
     shown = np.concatenate([curve_points(signals)[1], signals.pose.sites])
     low, high = shown.min(axis=0), shown.max(axis=0)
     side = max(float((high - low).max()), 1e-9)
+    if controls:
+        points = signals.time.curve.controls
+        inset = (margin - ROUND_CONTROLS) * side
+        near = points[((points > low - 0.5 * side) & (points < high + 0.5 * side)).all(axis=1)]
+        low = np.minimum(low, near.min(axis=0, initial=np.inf) + inset)
+        high = np.maximum(high, near.max(axis=0, initial=-np.inf) - inset)
     grow = np.maximum(margin * side, (0.45 * side - (high - low)) / 2)
     (x0, y0), (x1, y1) = low - grow, high + grow
     return float(x0), float(y0), float(x1), float(y1)

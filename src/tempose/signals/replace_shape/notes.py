@@ -32,13 +32,14 @@ def transfer_notes(
         Sentences for a person.
     """
     found = [
-        f"{len(mixtures.used)} of {len(q)} pairs used ({', '.join(map(str, mixtures.used))}); their mixtures "
-        f"leave {mixtures.residual:.2f} of the motion's spread (rms) that they cannot show"
+        f"{len(mixtures.used)} of {len(q)} pairs used ({', '.join(map(str, mixtures.used))}); what their "
+        f"mixtures cannot show is {mixtures.residual:.2f} times the motion's spread (rms); pairs nearer to "
+        "the poses of the clip lower it"
     ]
     if local is not None:
         found.append(
-            f"of a pair's distance to the mean of the others, which predict it, {local.error:.2f} is left "
-            f"by regions, {local.plain:.2f} as a whole"
+            f"a pair predicted from the others is missed by {100 * local.error:.0f} % of its distance to "
+            f'their mean, region by region; by {100 * local.plain:.0f} % as a whole ("regions": 0)'
         )
     if mixtures.condition > ILL_CONDITIONED:
         found.append(
