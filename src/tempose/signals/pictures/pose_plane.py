@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from tempose.render import Theme, ramp_colors
 from tempose.render.chart_scale import nice_ticks
@@ -159,10 +160,9 @@ def _frames(graph: Graph, signals: Signals, frames: FloatArray) -> None:
     sites = graph.place(*signals.pose.sites.T)
     radius = 3.6 if len(frames) <= 120 else 2.2
     colors = time_colors(signals.times, signals.duration, tone)
-    nearest = np.linalg.norm(sites[:, None] - frames[None], axis=2)
-    for site, gaps in zip(sites, nearest):
-        i = int(gaps.argmin())
-        if gaps[i] < 2 * radius:
+    nearest: Any = KDTree(frames).query(sites)
+    for site, gap, i in zip(sites, *nearest):
+        if gap < 2 * radius:
             drawing.disc(site, 1.9 * radius, colors[i])
             drawing.disc(site, 1.9 * radius - 1.2, tone.view)
         else:
