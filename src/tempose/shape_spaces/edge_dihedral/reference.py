@@ -12,6 +12,7 @@ from tempose.rotations import from_matrix, mean_rotation, to_matrix
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
 from tempose.shape_spaces.edge_dihedral.parts import rigid_fit, steady_weights
+from tempose.shape_spaces.edge_dihedral.pinches import split_pinches
 from tempose.typing import FloatArray, IntArray
 
 _SAMPLES = 48
@@ -22,9 +23,9 @@ class Reference:
     """Reference mesh of a shape space, the same arrays that are saved."""
 
     vertices: FloatArray
-    """(n, 3) metres: rest, turned to the mean rotation of the clip."""
+    """(n', 3) metres: rest, turned to the mean rotation of the clip, with the copies of `split_pinches`."""
     faces: IntArray
-    """(m, 3) int64."""
+    """(m, 3) int64, of the mesh with copies."""
     lengths: FloatArray
     """(E,) metres: mean over the clip."""
     dihedrals: FloatArray
@@ -32,7 +33,14 @@ class Reference:
     spread: FloatArray
     """(n_slots,) radians squared: circular variance of the angles over the clip, 0 without a clip."""
     steadiness: FloatArray
-    """(n,) weight of each vertex in the frame of its part."""
+    """(n',) weight of each vertex in the frame of its part."""
+    source: IntArray
+    """(n',) int64: which vertex of the mesh each one is a copy of."""
+
+    @property
+    def n_vertices(self) -> int:
+        """Number n of vertices of the mesh, copies not counted."""
+        return int(self.source[-1]) + 1
 
     def state(self) -> dict[str, FloatArray]:
         """Return the arrays by name.
@@ -63,10 +71,11 @@ class Reference:
         ValueError
             If an array is missing.
         """
+        state = {"source": np.arange(len(state.get("vertices", ()))), **state}  # as all once were
         missing = [field.name for field in fields(cls) if field.name not in state]
         if missing:
             raise ValueError(f"state must hold {', '.join(missing)}, found {', '.join(state) or 'nothing'}")
-        kinds = {"faces": np.int64}
+        kinds = {"faces": np.int64, "source": np.int64}
         arrays = {
             field.name: np.array(state[field.name], dtype=kinds.get(field.name, np.float64))
             for field in fields(cls)
@@ -98,8 +107,10 @@ def make_reference(rest: FloatArray, faces: IntArray, frames: FloatArray | None)
     """
     V = as_floats(rest, "rest", ("n", 3))
     F = check_faces(faces, len(V))
-    hinges = find_hinges(F)
     poses = sample_poses(V, frames)
+    F, source = split_pinches(F, len(V))
+    V, poses = V[source], poses[:, source]
+    hinges = find_hinges(F)
     lengths, sines, cosines = 0.0, 0.0, 0.0
     for X in poses:
         measured, angles = lengths_and_dihedrals(X, F, hinges)
@@ -109,7 +120,7 @@ def make_reference(rest: FloatArray, faces: IntArray, frames: FloatArray | None)
     turned = _turned_to_mean(V, poses, weights)
     together = np.hypot(sines, cosines) / len(poses)
     spread = -2 * np.log(np.clip(together, 1e-6, 1.0))
-    arrays = (turned, F, np.asarray(lengths), np.arctan2(sines, cosines), spread, weights)
+    arrays = (turned, F, np.asarray(lengths), np.arctan2(sines, cosines), spread, weights, source)
     return Reference(*(read_only(np.array(array)) for array in arrays))
 
 

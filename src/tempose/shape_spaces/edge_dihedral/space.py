@@ -12,6 +12,7 @@ from tempose.shape_spaces.edge_dihedral.decoded import Decoded
 from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_meshes, over_rows
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
+from tempose.shape_spaces.edge_dihedral.pinches import join_pinches
 from tempose.shape_spaces.edge_dihedral.placement import Placement
 from tempose.shape_spaces.edge_dihedral.reference import Reference, make_reference
 from tempose.shape_spaces.edge_dihedral.refine import Refinement
@@ -67,7 +68,7 @@ class EdgeDihedralSpace:
         self.placement = Placement(reference.vertices, reference.faces, reference.steadiness)
         self.assembly = make_assembly(reference, hinges)
         self.refinement = Refinement(
-            reference.faces, self.n_vertices, hinges, self.length_weights, self.angle_weights
+            reference.faces, len(reference.vertices), hinges, self.length_weights, self.angle_weights
         )
         self.n_edges, self.n_shape = len(l0), len(l0) + hinges.n_slots
 
@@ -79,7 +80,7 @@ class EdgeDihedralSpace:
     @property
     def n_vertices(self) -> int:
         """Number n of vertices of a mesh."""
-        return len(self.reference.vertices)
+        return self.reference.n_vertices
 
     def encode(self, V: FloatArray) -> FloatArray:
         """Measure meshes, each for itself.
@@ -121,6 +122,7 @@ class EdgeDihedralSpace:
         return path
 
     def _encode(self, V: FloatArray) -> FloatArray:
+        V = V[self.reference.source]
         lengths, angles = lengths_and_dihedrals(V, self.reference.faces, self.hinges)
         away = angles - self.reference.dihedrals
         angles = angles - np.round(away / _TURN) * _TURN
@@ -182,7 +184,7 @@ class EdgeDihedralSpace:
         built = self.assembly.build(lengths, angles)
         steps = refinements if built.mismatch > _MISMATCH else 0
         found = self.refinement.refine(built.vertices, lengths, angles, steps, near)
-        V = self.placement.place(found.vertices, z[self.n_shape :])
+        V = join_pinches(self.placement.place(found.vertices, z[self.n_shape :]), self.reference.source)
         return Decoded(V, np.sqrt(found.energy), built.mismatch, found.n_iter, found.converged or steps == 0)
 
     def state(self) -> dict[str, FloatArray]:

@@ -11,6 +11,7 @@ from tempose.shape_spaces.edge_dihedral.assembly import make_assembly
 from tempose.shape_spaces.edge_dihedral.frames import check_coordinates, check_meshes, over_rows
 from tempose.shape_spaces.edge_dihedral.hinges import find_hinges
 from tempose.shape_spaces.edge_dihedral.measure import lengths_and_dihedrals
+from tempose.shape_spaces.edge_dihedral.pinches import join_pinches
 from tempose.shape_spaces.edge_dihedral.placement import Placement
 from tempose.shape_spaces.edge_dihedral.reference import (
     Reference,
@@ -54,7 +55,7 @@ class RotationInvariantSpace:
         self.height_weights = _HEIGHT * np.repeat(self.length_weights, 2)
         self.placement = Placement(reference.vertices, reference.faces, reference.steadiness)
         self.assembly = make_assembly(reference, hinges)
-        self.search = SignSearch(reference.faces, self.n_vertices, hinges.edges[hinges.edge])
+        self.search = SignSearch(reference.faces, len(reference.vertices), hinges.edges[hinges.edge])
         self.n_edges, self.n_shape = len(l0), 3 * len(l0)
 
     @property
@@ -65,7 +66,7 @@ class RotationInvariantSpace:
     @property
     def n_vertices(self) -> int:
         """Number n of vertices of a mesh."""
-        return len(self.reference.vertices)
+        return self.reference.n_vertices
 
     def encode(self, V: FloatArray) -> FloatArray:
         """Measure meshes, each for itself.
@@ -105,6 +106,7 @@ class RotationInvariantSpace:
         return path
 
     def _encode(self, V: FloatArray) -> FloatArray:
+        V = V[self.reference.source]
         lengths, _ = lengths_and_dihedrals(V, self.reference.faces, self.hinges)
         heights, _ = heights_and_cosines(V, self.reference.faces, self.hinges, self.fronts)
         shape = [lengths * self.length_weights, heights.ravel() * self.height_weights]
@@ -133,7 +135,7 @@ class RotationInvariantSpace:
     def _decode(self, z: FloatArray) -> FloatArray:
         lengths, dihedrals, _ = self._dihedrals(z)
         built = self.assembly.build(lengths, dihedrals)
-        return self.placement.place(built.vertices, z[self.n_shape :])
+        return join_pinches(self.placement.place(built.vertices, z[self.n_shape :]), self.reference.source)
 
     def _dihedrals(self, z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         lengths = z[: self.n_edges] / self.length_weights
@@ -201,6 +203,6 @@ class RotationInvariantSpace:
         hinges = find_hinges(reference.faces)
         fronts = corner_fronts(reference.faces, hinges)
         cosines = np.zeros(reference.faces.shape)
-        for V in sample_poses(rest, frames):
+        for V in sample_poses(rest, frames)[:, reference.source]:
             cosines += heights_and_cosines(V, reference.faces, hinges, fronts)[1]
         return cls(reference, np.where(cosines < 0, -1.0, 1.0))
