@@ -71,7 +71,10 @@ class Reference:
         ValueError
             If an array is missing.
         """
-        state = {"source": np.arange(len(state.get("vertices", ()))), **state}  # as all once were
+        state = {
+            "source": np.arange(len(state.get("vertices", ())), dtype=np.float64),
+            **state,
+        }  # as all once were
         missing = [field.name for field in fields(cls) if field.name not in state]
         if missing:
             raise ValueError(f"state must hold {', '.join(missing)}, found {', '.join(state) or 'nothing'}")
