@@ -67,9 +67,8 @@ def plain_shape(Z: np.ndarray, m: int) -> np.ndarray:
 
 
 def plain_layout(X: np.ndarray, tolerance: float = 1e-6) -> np.ndarray:
-    """Guttman steps from the first two coordinates until none moves by more than 1e-6 of the extent."""
-    D = np.linalg.norm(X[:, None] - X[None], axis=2)
-    P = X[:, :2]
+    """Plain Guttman steps from the first two coordinates until none is longer than a part of the layout."""
+    D, P = np.linalg.norm(X[:, None] - X[None], axis=2), X[:, :2]
     while True:
         d = np.linalg.norm(P[:, None] - P[None], axis=2)
         B = np.where(d > 0, -D / np.where(d > 0, d, 1.0), 0.0)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from signals_fit import plain_layout
 from tempose.signals.pose import PoseLayout, choose_layout, order_sites
 from tempose.signals.pose.choose import pose_distances
 
@@ -32,18 +33,6 @@ def bouncing(n: int, m: int = 42) -> np.ndarray:
     t, mode = np.linspace(0.0, n / 20, n), np.arange(1, m + 1)
     speed, phase = 0.4 * mode * rng.uniform(0.7, 1.3, m), rng.uniform(0, 2 * np.pi, m)
     return np.sin(t[:, None] * speed + phase) / mode**1.3
-
-
-def plain_scaling(D: np.ndarray, P: np.ndarray, tolerance: float = 1e-6) -> np.ndarray:
-    """Plain Guttman steps in numpy until none is longer than a part of the layout."""
-    while True:
-        d = np.linalg.norm(P[:, None] - P[None], axis=2)
-        B = np.where(d > 0, -D / np.where(d > 0, d, 1.0), 0.0)
-        np.fill_diagonal(B, 0.0)
-        np.fill_diagonal(B, -B.sum(axis=1))
-        before, P = P, B @ P / len(P)
-        if np.linalg.norm(P - before) <= tolerance * np.linalg.norm(P):
-            return P
 
 
 def plain_order(P: np.ndarray, X: np.ndarray, sites: int) -> list[int]:
@@ -82,7 +71,7 @@ def rows() -> list[dict[str, Any]]:
     layout = PoseLayout(D)
     found = layout.solve()
     P = found.positions
-    cold, plain = least(layout.solve, 10), least(lambda: plain_scaling(D, X[:, :2]), 1)
+    cold, plain = least(layout.solve, 10), least(lambda: plain_layout(X), 1)
     greedy = least(lambda: order_sites(P, X, most=SITES), 10)
     refit = least(lambda: plain_order(P, X, SITES), 1)
     chosen = choose_layout(X)

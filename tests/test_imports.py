@@ -13,7 +13,7 @@ import pytest
 SRC = Path(__file__).resolve().parents[1] / "src" / "tempose"
 
 TABLE = [
-    {"_version", "_validate", "_files", "typing", "jobs"},
+    {"_version", "_validate", "_files", "_tables", "typing", "jobs"},
     {"rotations", "linalg", "geometry", "curves"},
     {"clips", "kinematics"},
     {"formats", "live", "samples", "datasets", "shape_spaces", "embedding", "metrics", "render", "models"},

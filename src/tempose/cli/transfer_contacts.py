@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
-import tomllib
 from pathlib import Path
-from typing import Any
+
+from tempose._tables import read_table
 
 
 def load_contacts(path: Path | None, hold: bool) -> bool | dict[str, list[list[int]]]:
@@ -33,12 +32,8 @@ def load_contacts(path: Path | None, hold: bool) -> bool | dict[str, list[list[i
         return hold
     if not hold:
         raise ValueError("--no-contacts and --contact-frames contradict each other; give one of them")
-    try:
-        text = path.read_text(encoding="utf-8")
-        table: Any = tomllib.loads(text) if path.suffix.lower() == ".toml" else json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: expected JSON or TOML: {error}") from None
-    if not isinstance(table, dict) or not all(isinstance(value, list) for value in table.values()):
+    table = read_table(path)
+    if not all(isinstance(value, list) for value in table.values()):
         raise ValueError(f'{path}: expected one table such as {{"left_foot": [[0, 24], [51, 78]]}}')
     return table
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tempose
+from tempose._tables import read_table
 from tempose.cli.console import note, progress_bar
 
 if TYPE_CHECKING:
@@ -161,11 +160,7 @@ def load_mapping(path: Path | None) -> dict[str, str] | None:
     """
     if path is None:
         return None
-    try:
-        text = path.read_text(encoding="utf-8")
-        table: Any = tomllib.loads(text) if path.suffix.lower() == ".toml" else json.loads(text)
-    except ValueError as error:
-        raise ValueError(f"{path}: expected JSON or TOML: {error}") from None
-    if not isinstance(table, dict) or not all(isinstance(value, str) for value in table.values()):
+    table = read_table(path)
+    if not all(isinstance(value, str) for value in table.values()):
         raise ValueError(f'{path}: expected one table such as {{"LeftForeArm": "left_forearm"}}')
     return table

@@ -6,9 +6,9 @@ import os
 from pathlib import Path
 from typing import Any
 
+from tempose._tables import read_table
 from tempose.signals.design.design import design
 from tempose.signals.edits import keys as check
-from tempose.signals.edits.files import read_table
 from tempose.signals.replace_shape.poses import load_poses
 from tempose.signals.signals import Signals
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tempose.signals.edits.files import read_table
+from tempose._tables import read_table
 from tempose.signals.edits.operations import OPERATIONS
 from tempose.signals.signals import Signals
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from tempose._files import atomic_path
+from tempose._tables import read_table
 from tempose.transfer.adjustments.adjustment import Adjustment
 
 
@@ -34,19 +34,8 @@ def load_adjustments(path: str | os.PathLike[str]) -> tuple[Adjustment, ...]:
         If it cannot be opened.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        data: Any = tomllib.loads(text) if path.suffix.lower() == ".toml" else json.loads(text)
-    except RecursionError:
-        raise ValueError(f"{path}: brackets are nested too deep for a list of adjustments") from None
-    except ValueError as error:
-        kind = "TOML" if path.suffix.lower() == ".toml" else "JSON"
-        raise ValueError(f"{path}: expected {kind}: {error}") from None
-    if (
-        not isinstance(data, dict)
-        or list(data) != ["adjustments"]
-        or not isinstance(data["adjustments"], list)
-    ):
+    data = read_table(path)
+    if list(data) != ["adjustments"] or not isinstance(data["adjustments"], list):
         raise ValueError(f'{path}: expected {{"adjustments": [...]}} and no other key')
     return tuple(_entry(path, i, entry) for i, entry in enumerate(data["adjustments"]))
 

@@ -28,14 +28,15 @@ def read_table(path: Path) -> dict[str, Any]:
     OSError
         If it cannot be opened.
     """
-    toml = path.suffix.lower() == ".toml"
+    suffix = path.suffix.lower()
     try:
         text = path.read_text(encoding="utf-8-sig")
-        data: Any = tomllib.loads(text) if toml else json.loads(text)
+        data: Any = tomllib.loads(text) if suffix == ".toml" else json.loads(text)
     except RecursionError:
-        raise ValueError(f"{path}: brackets are nested too deep") from None
+        raise ValueError(f"{path}: expected a table, but its brackets are nested too deep") from None
     except ValueError as error:
-        raise ValueError(f"{path}: expected {'TOML' if toml else 'JSON'}: {error}") from None
+        kind = {".toml": "TOML", ".json": "JSON"}.get(suffix, "JSON or TOML")
+        raise ValueError(f"{path}: expected {kind}: {error}") from None
     if not isinstance(data, dict):
         raise ValueError(f"{path}: expected a table in braces, found {type(data).__name__}")
     return data
