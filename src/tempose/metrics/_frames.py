@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tempose.typing import FloatArray
+from tempose.clips.blocks import cut_blocks
 
 BLOCK_VALUES = 500_000
 """Numbers held in one block: 4 MB as float64, so that most of it stays in the cache."""
@@ -51,42 +51,9 @@ def block_slices(n_frames: int, values_per_frame: int) -> Iterator[slice]:
     values_per_frame : int
         Numbers that the caller makes of one frame.
 
-    Yields
-    ------
-    slice
-        Frames of one block, in order; never empty.
-    """
-    step = max(1, BLOCK_VALUES // max(values_per_frame, 1))
-    for start in range(0, n_frames, step):
-        yield slice(start, min(start + step, n_frames))
-
-
-def block(V: Any, frames: slice, name: str) -> FloatArray:
-    """Read a block of frames as float64.
-
-    Parameters
-    ----------
-    V : (T, n, 3) array
-        Clip, as `check_clip` returns it.
-    frames : slice
-        Which frames, with both ends given.
-    name : str
-        Name of the argument, for the message.
-
     Returns
     -------
-    (k, n, 3) ndarray
-        The frames.
-
-    Raises
-    ------
-    ValueError
-        If a value is NaN or infinite; the message names the frame and the vertex.
+    iterator of slice
+        Frames of one block after another.
     """
-    part = np.asarray(V[frames], dtype=np.float64)
-    if not np.isfinite(part).all():
-        t, v, _ = (int(i) for i in np.argwhere(~np.isfinite(part))[0])
-        raise ValueError(
-            f"{name} must be finite, found NaN or infinity in frame {frames.start + t}, vertex {v}"
-        )
-    return part
+    return cut_blocks(n_frames, values_per_frame, BLOCK_VALUES)

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from tempose._validate import as_floats, as_indices
+from tempose.clips.blocks import read_block
 from tempose.geometry import edge_list
-from tempose.metrics._frames import block, block_slices, check_clip
+from tempose.metrics._frames import block_slices, check_clip
 from tempose.metrics._tails import UpperTail
 from tempose.metrics._triangles import area_vectors, coordinates, differences, dot
 from tempose.typing import BoolArray, FloatArray, IntArray
@@ -123,7 +124,7 @@ def _ratios(
         raise ValueError(f"F must leave at least one {what} with a size at rest, got none of {len(rest)}")
     high, low = UpperTail(count, 99), UpperTail(count, 99)
     for frames in block_slices(len(V), max(values, 3 * V.shape[1])):
-        ratio = measure(block(V, frames, "V"))[:, sized] / rest[sized]
+        ratio = measure(read_block(V, frames, "V"))[:, sized] / rest[sized]
         high.add(ratio)
         low.add(-ratio)
     return Ratios(-low.maximum, -low.percentile, high.percentile, high.maximum)

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from tempose.metrics._frames import block, block_slices, check_clip
+from tempose.clips.blocks import read_block
+from tempose.metrics._frames import block_slices, check_clip
 from tempose.metrics._tails import UpperTail
 from tempose.typing import FloatArray
 
@@ -85,7 +86,7 @@ def compare(V: FloatArray, V2: FloatArray, D: float) -> ClipErrors:
     T, n, _ = V.shape
     meter = ErrorMeter(T * n, D)
     for frames in block_slices(T, 3 * n):
-        meter.add(block(V, frames, "V"), block(V2, frames, "V2"))
+        meter.add(read_block(V, frames, "V"), read_block(V2, frames, "V2"))
     return meter.errors
 
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from tempose._validate import as_floats, as_indices
-from tempose.metrics._frames import block, block_slices, check_clip
+from tempose.clips.blocks import read_block
+from tempose.metrics._frames import block_slices, check_clip
 from tempose.metrics._triangles import Vectors, area_vectors, coordinates, cross, dot, take
 from tempose.typing import BoolArray, FloatArray, IntArray
 
@@ -92,7 +93,7 @@ def flipped_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, rotations: F
         turns = as_floats(rotations[frames], "rotations", ("T", len(F), 4))
         if turns.size and np.abs(np.linalg.norm(turns, axis=-1) - 1).max() > 1e-3:
             raise ValueError("rotations must be unit quaternions wxyz, got another length")
-        flipped = flipped_faces(block(V, frames, "V"), F, V_rest, turns)
+        flipped = flipped_faces(read_block(V, frames, "V"), F, V_rest, turns)
         percent[frames] = 100 * flipped.sum(axis=1) / counted
     return percent
 
@@ -132,7 +133,7 @@ def folded_percent(V: FloatArray, F: IntArray, V_rest: FloatArray, threshold: fl
     unfolded = ~_folded(V_rest, F, pairs, sign, threshold)
     percent = np.zeros(len(V))
     for frames in block_slices(len(V), 24 * len(F) + V.shape[1]):
-        folded = _folded(block(V, frames, "V"), F, pairs, sign, threshold) & unfolded
+        folded = _folded(read_block(V, frames, "V"), F, pairs, sign, threshold) & unfolded
         percent[frames] = 100 * folded.sum(axis=1) / max(len(pairs), 1)
     return percent
 

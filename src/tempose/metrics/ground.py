@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tempose.metrics._frames import block, block_slices, check_clip
+from tempose.clips.blocks import read_block
+from tempose.metrics._frames import block_slices, check_clip
 from tempose.typing import FloatArray
 
 
@@ -48,7 +49,7 @@ def ground_depths(V: FloatArray, ground: float = 0.0) -> FloatArray:
     V = check_clip(V, "V")
     depths = np.zeros(len(V))
     for frames in block_slices(len(V), V.shape[1] * 3):
-        depths[frames] = ground - block(V, frames, "V")[..., 1].min(axis=1)
+        depths[frames] = ground - read_block(V, frames, "V")[..., 1].min(axis=1)
     return np.maximum(depths, 0.0)
 
 

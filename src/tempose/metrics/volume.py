@@ -8,9 +8,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from tempose._validate import as_floats, as_indices
+from tempose.clips.blocks import read_block
 from tempose.geometry import face_components
 from tempose.metrics._closing import Caps, close_holes
-from tempose.metrics._frames import block, block_slices, check_clip
+from tempose.metrics._frames import block_slices, check_clip
 from tempose.metrics._triangles import coordinates, cross, dot, take
 from tempose.typing import FloatArray, IntArray
 
@@ -188,7 +189,7 @@ def _sum_tetrahedra(V: Any, F: IntArray, labels: IntArray, count: int) -> FloatA
     ).tocsr()
     total = np.zeros((T, count))
     for frames in block_slices(T, 18 * (len(F) + len(caps.edges)) + 3 * n):
-        total[frames] = _tetrahedra(block(V, frames, "V"), F, caps) @ collect
+        total[frames] = _tetrahedra(read_block(V, frames, "V"), F, caps) @ collect
     return total
 
 

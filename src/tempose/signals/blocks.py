@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
-from tempose.typing import FloatArray
+from tempose.clips.blocks import cut_blocks
 
 BLOCK_VALUES = 2_000_000
 """Numbers in one block: 16 MB as float64. Products with a matrix as wide as a frame need blocks this tall."""
@@ -22,40 +20,9 @@ def block_slices(n_frames: int, values_per_frame: int) -> Iterator[slice]:
     values_per_frame : int
         Numbers that the caller makes of one frame.
 
-    Yields
-    ------
-    slice
-        Frames of one block, in order; never empty.
-    """
-    step = max(1, BLOCK_VALUES // max(values_per_frame, 1))
-    for start in range(0, n_frames, step):
-        yield slice(start, min(start + step, n_frames))
-
-
-def read_block(V: FloatArray, frames: slice) -> FloatArray:
-    """Read frames as float64.
-
-    Parameters
-    ----------
-    V : (T, n, 3) float
-        Clip; an array or a memory map.
-    frames : slice
-        Which frames, with both ends given.
-
     Returns
     -------
-    (k, n, 3) ndarray
-        The frames.
-
-    Raises
-    ------
-    ValueError
-        If a value is NaN or infinite; the message names the frame and the vertex.
+    iterator of slice
+        Frames of one block after another.
     """
-    part = np.asarray(V[frames], dtype=np.float64)
-    if not np.isfinite(part).all():
-        t, v = (int(i) for i in np.argwhere(~np.isfinite(part))[0][:2])
-        raise ValueError(
-            f"vertices must be finite, found NaN or infinity in frame {frames.start + t}, vertex {v}"
-        )
-    return part
+    return cut_blocks(n_frames, values_per_frame, BLOCK_VALUES)

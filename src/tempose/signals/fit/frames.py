@@ -10,7 +10,8 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.clips import Mesh, MeshClip
-from tempose.signals.blocks import block_slices, read_block
+from tempose.clips.blocks import read_block
+from tempose.signals.blocks import block_slices
 from tempose.signals.placement import fit_placements, in_body
 from tempose.typing import FloatArray, IntArray, Progress, silent
 

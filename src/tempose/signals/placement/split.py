@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from tempose._validate import as_floats
+from tempose.clips.blocks import read_block
 from tempose.rotations import from_matrix, polar_rotation
-from tempose.signals.blocks import block_slices, read_block
+from tempose.signals.blocks import block_slices
 from tempose.signals.placement.place import in_body
 from tempose.signals.placement.spline import continuous_signs
 from tempose.typing import FloatArray, Progress, silent

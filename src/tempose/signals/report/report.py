@@ -11,8 +11,9 @@ import numpy as np
 
 from tempose._version import __version__
 from tempose.clips import MeshClip
+from tempose.clips.blocks import read_block
 from tempose.metrics import ErrorMeter
-from tempose.signals.blocks import block_slices, read_block
+from tempose.signals.blocks import block_slices
 from tempose.signals.fit.clip import FittedClip
 from tempose.signals.fit.options import FitOptions
 from tempose.signals.report.frame_errors import frame_errors, scree
