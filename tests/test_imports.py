@@ -14,7 +14,7 @@ SRC = Path(__file__).resolve().parents[1] / "src" / "tempose"
 
 TABLE = [
     {"_version", "_validate", "_files", "_tables", "typing", "jobs"},
-    {"rotations", "linalg", "geometry", "curves"},
+    {"rotations", "linalg", "geometry", "curves", "regression"},
     {"clips", "kinematics"},
     {"formats", "live", "samples", "datasets", "shape_spaces", "embedding", "metrics", "render", "models"},
     {"transfer", "signals", "rigging", "detail", "steering"},
