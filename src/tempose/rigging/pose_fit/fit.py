@@ -97,7 +97,7 @@ def _procrustes(A: FloatArray, B: FloatArray, p: FloatArray, skeleton) -> tuple[
     J = len(p)
     weight = A[3::4, 3::4].sum(axis=1)
     S = A.reshape(J, 4, J, 4).sum(axis=2)
-    R = np.empty((J, 3, 3)) if False else np.zeros((J, 3, 3))
+    R = np.zeros((J, 3, 3))
     C = S[:, 3, :3] / np.maximum(weight, 1e-30)[:, None]
     D = B.reshape(J, 4, 3)[:, 3] / np.maximum(weight, 1e-30)[:, None]
     for j in range(J):
