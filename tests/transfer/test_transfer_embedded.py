@@ -13,7 +13,7 @@ from transfer_bodies import clip_of, human_body, t_pose
 from transfer_zoo import tube
 
 from tempose.clips import Mesh, Skeleton, SkeletonClip, SkinnedMesh, Source
-from tempose.embedding import Embedding, embed_skin
+from tempose.embedding import Embedding, embed_dressed, embed_skin
 from tempose.kinematics import rest_transforms
 from tempose.samples.walk import walk
 from tempose.transfer import (
@@ -23,7 +23,6 @@ from tempose.transfer import (
     transfer_motion,
 )
 from tempose.transfer.pairing import embedded_pairs
-from tempose.transfer.pairing.dressed import embed_dressed
 
 
 @lru_cache

@@ -71,7 +71,7 @@ def embed_skeleton(mesh: Mesh, *, up: str | None = None, progress: Progress = si
     ----------
     .. [1] Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007.
     """
-    return _embed(mesh, up, progress)[0]
+    return embed_in_cells(mesh, up, progress)[0]
 
 
 def embed_skin(
@@ -100,13 +100,31 @@ def embed_skin(
     ValueError
         If the mesh is empty, flat, or encloses no volume.
     """
-    embedding, cells = _embed(mesh, up, progress)
+    embedding, cells = embed_in_cells(mesh, up, progress)
     weights = heat_weights(mesh, embedding, cells=cells)
     progress(4, 4, "weights")
     return SkinnedMesh(mesh, embedding.skeleton, weights), embedding
 
 
-def _embed(mesh: Mesh, up: str | None, progress: Progress) -> tuple[Embedding, Cells]:
+def embed_in_cells(mesh: Mesh, up: str | None, progress: Progress) -> tuple[Embedding, Cells]:
+    """Place a human skeleton inside a mesh, and keep the inside for what comes next.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        See `embed_skeleton`.
+    up : str or None
+        See `embed_skeleton`.
+    progress : Progress
+        Called after each stage.
+
+    Returns
+    -------
+    embedding : Embedding
+        The skeleton.
+    cells : Cells
+        The inside as it was read.
+    """
     wanted = None if up is None else axis_vector(up)
     clock = _Clock()
     solid = make_solid(mesh.vertices, mesh.faces)

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, Skeleton, SkinnedMesh
-from tempose.embedding import Embedding
+from tempose.embedding import Embedding, embed_dressed
 from tempose.kinematics import rest_transforms
 from tempose.kinematics.roles import find_roles
-from tempose.transfer.pairing.dressed import embed_dressed
 from tempose.transfer.pairing.pairs import Pairs
 from tempose.transfer.pairing.skin_pairs import pairs_from_skin
 
