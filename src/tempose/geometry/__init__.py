@@ -1,5 +1,6 @@
 """Geometry of triangle meshes on plain arrays."""
 
+from tempose.geometry.collapses import Collapses, collapse_edges
 from tempose.geometry.defects import Defects, find_defects
 from tempose.geometry.laplacian import cotangent_laplacian, cotangents, edge_laplacian, mass_matrix
 from tempose.geometry.normals import face_areas, face_normals, vertex_areas, vertex_normals
@@ -14,8 +15,10 @@ from tempose.geometry.topology import (
 )
 
 __all__ = [
+    "Collapses",
     "Defects",
     "boundary_edges",
+    "collapse_edges",
     "cotangent_laplacian",
     "cotangents",
     "edge_laplacian",
