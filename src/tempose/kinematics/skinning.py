@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.clips import Skeleton, SkeletonClip, SkinnedMesh
-from tempose.kinematics.forward import forward_kinematics, rest_transforms
-from tempose.rotations import conjugate, multiply, rotate, to_matrix
+from tempose.kinematics.bone_transforms import bone_transforms
+from tempose.rotations import to_matrix
 from tempose.typing import FloatArray
 
 
@@ -32,16 +32,13 @@ def linear_blend_skinning(
     (T, n, 3) ndarray
         Posed vertices, metres; those bound to nothing stay where they are.
     """
-    bind_rotation, bind_position = rest_transforms(skin.skeleton)
-    world, position = forward_kinematics(skeleton or skin.skeleton, rotations, root_position)
-    turn = multiply(world, conjugate(bind_rotation))
-    shift = position - rotate(turn, bind_position)
+    turn, shift = bone_transforms(skin.skeleton, rotations, root_position, skeleton)
     V1 = np.column_stack([skin.mesh.vertices, np.ones(len(skin.mesh.vertices))])
     # (n, J*4) @ (J*4, T*3): each vertex row holds w_j [x y z 1] for every joint
     lifted = (skin.weights[:, :, None] * V1[:, None, :]).reshape(len(V1), -1)
     matrices = np.concatenate([to_matrix(turn), shift[..., None]], axis=-1)
     columns = matrices.transpose(1, 3, 0, 2).reshape(lifted.shape[1], -1)
-    posed = (lifted @ columns).reshape(len(V1), len(world), 3).transpose(1, 0, 2)
+    posed = (lifted @ columns).reshape(len(V1), len(turn), 3).transpose(1, 0, 2)
     unbound = skin.weights.sum(axis=1) == 0
     posed[:, unbound] = skin.mesh.vertices[unbound]
     return posed
