@@ -31,7 +31,7 @@ FORMATS: dict[str, Format] = {
     ".npy": Format(("clip",), True),
     ".glb": Format(("mesh", "clip", "skeleton", "skin"), True),
     ".gltf": Format(("mesh", "clip", "skeleton", "skin"), False),
-    ".bvh": Format(("skeleton",), False),
+    ".bvh": Format(("skeleton",), True),
     ".amc": Format(("skeleton",), False),
     ".mhw": Format(("skin",), False),
 }

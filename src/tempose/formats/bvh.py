@@ -133,7 +133,8 @@ def _skeleton(joints: list[BvhJoint], places: dict[int, FloatArray], notes: list
             worst, who = deviation, joints[j].name
     if worst > 1e-4 * size:
         notes.append(f"Bone lengths vary, means are kept: largest deviation {worst:.4g} units at {who!r}.")
-    tips = np.array([joint.tip or (np.nan,) * 3 for joint in joints])
+    # an end site on its own joint says that the length is unknown
+    tips = np.array([joint.tip if any(joint.tip or ()) else (np.nan,) * 3 for joint in joints])
     parents = np.array([joint.parent for joint in joints])
     return Skeleton(_distinct([joint.name for joint in joints], notes), parents, offsets, tips=tips)
 

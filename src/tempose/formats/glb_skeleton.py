@@ -21,7 +21,7 @@ from tempose.formats.glb_joints import (
 from tempose.formats.glb_nodes import Nodes, world_matrices
 from tempose.formats.glb_parts import Geometry
 from tempose.kinematics import forward_kinematics
-from tempose.rotations import rotate
+from tempose.rotations import continuous, rotate
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 _BLOCK = 512
@@ -85,7 +85,7 @@ def skeleton_moves(
     if np.abs(root - positions[:, 0]).max() <= _STILL * size:
         root = positions[:, 0]
     skeleton = replace(rest, offsets=fixed)
-    local = _continuous(local_rotations(joints.parents, rotations))
+    local = continuous(local_rotations(joints.parents, rotations))
     _, reached = forward_kinematics(skeleton, local, root)
     notes = _deviation(reached - positions, carrying, skeleton, size)
     if not np.array_equal(root, positions[:, 0]):
@@ -150,13 +150,6 @@ def _root_path(
     for j in _path(parents, anchor)[:-1]:
         root -= rotate(rotations[:, parents[j]], offsets[j])
     return root
-
-
-def _continuous(q: FloatArray) -> FloatArray:
-    """Of q and -q take the one nearer to the frame before."""
-    turned = np.where((q[1:] * q[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
-    signs = np.concatenate([np.ones((1, q.shape[1])), np.cumprod(turned, axis=0)])
-    return q * signs[..., None]
 
 
 def _deviation(error: FloatArray, carrying: IntArray, skeleton: Skeleton, size: float) -> tuple[str, ...]:

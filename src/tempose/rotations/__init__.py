@@ -2,11 +2,17 @@
 
 from tempose.rotations.alignment import polar_rotation, procrustes_rotation, shortest_rotation
 from tempose.rotations.average import mean_rotation
-from tempose.rotations.euler import from_euler_degrees, from_rotation_vector, to_rotation_vector
+from tempose.rotations.euler import (
+    from_euler_degrees,
+    from_rotation_vector,
+    to_euler_degrees,
+    to_rotation_vector,
+)
 from tempose.rotations.quaternions import (
     IDENTITY,
     angle_between,
     conjugate,
+    continuous,
     from_matrix,
     multiply,
     normalise,
@@ -20,6 +26,7 @@ __all__ = [
     "IDENTITY",
     "angle_between",
     "conjugate",
+    "continuous",
     "from_euler_degrees",
     "from_matrix",
     "from_rotation_vector",
@@ -32,6 +39,7 @@ __all__ = [
     "shortest_rotation",
     "slerp",
     "swing_twist",
+    "to_euler_degrees",
     "to_matrix",
     "to_rotation_vector",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.rotations.quaternions import multiply
+from tempose.rotations.quaternions import multiply, to_matrix
 from tempose.typing import FloatArray
 
 
@@ -87,3 +87,44 @@ def from_euler_degrees(angles: FloatArray, order: str) -> FloatArray:
         step[..., 1 + "xyz".index(letter)] = np.sin(half[..., k])
         q = multiply(q, step)
     return q
+
+
+def to_euler_degrees(q: FloatArray, order: str) -> FloatArray:
+    """Angles about three moving axes: the inverse of `from_euler_degrees`.
+
+    Parameters
+    ----------
+    q : (..., 4) float
+        Unit quaternions wxyz.
+    order : str
+        Three different letters out of ``"xyz"``, first one outermost.
+
+    Returns
+    -------
+    (..., 3) ndarray
+        Degrees: the first and the last from -180 to 180, the middle one from -90 to 90. Where the middle
+        one is 90 degrees only a sum of the others is determined, and the first is 0.
+
+    Raises
+    ------
+    ValueError
+        If `order` is anything else.
+
+    Examples
+    --------
+    >>> to_euler_degrees(from_euler_degrees(np.array([10.0, 20, 30]), "zxy"), "zxy").round(9).tolist()
+    [10.0, 20.0, 30.0]
+    """
+    if sorted(order.lower()) != ["x", "y", "z"]:
+        raise ValueError(f"order must be the letters x, y and z in some order, got {order!r}")
+    i, j, k = ("xyz".index(letter) for letter in order.lower())
+    sign = 1.0 if (j - i) % 3 == 1 else -1.0
+    R = to_matrix(q)
+    flat = np.hypot(R[..., j, k], R[..., k, k]) < 1e-13
+    first = np.where(flat, 0.0, np.arctan2(-sign * R[..., j, k], R[..., k, k]))
+    # what is left after the first turn is taken back is exact also where the middle one is near 90 degrees
+    c, s = np.cos(first)[..., None], sign * np.sin(first)[..., None]
+    row_j, row_k = c * R[..., j, :] + s * R[..., k, :], c * R[..., k, :] - s * R[..., j, :]
+    middle = np.arctan2(sign * R[..., i, k], row_k[..., k])
+    last = np.arctan2(sign * row_j[..., i], row_j[..., j])
+    return np.degrees(np.stack([first, middle, last], axis=-1))

@@ -216,3 +216,27 @@ def slerp(p: FloatArray, q: FloatArray, s: FloatArray | float) -> FloatArray:
     a = (1 - s) * np.sinc((1 - s) * theta / np.pi) / scale
     b = s * np.sinc(s * theta / np.pi) / scale
     return normalise(a * p + b * q)
+
+
+def continuous(q: FloatArray) -> FloatArray:
+    """Of q and -q, which are the same rotation, take the one nearer to the frame before.
+
+    Parameters
+    ----------
+    q : (T, ..., 4) float
+        Unit quaternions wxyz, frames first.
+
+    Returns
+    -------
+    (T, ..., 4) ndarray
+        The same rotations; the first frame is left as it is.
+
+    Examples
+    --------
+    >>> continuous(np.array([[1.0, 0, 0, 0], [-0.8, -0.6, 0, 0], [0.6, 0.8, 0, 0]]))[:, :2].tolist()
+    [[1.0, 0.0], [0.8, 0.6], [0.6, 0.8]]
+    """
+    q = np.asarray(q, dtype=np.float64)
+    turned = np.where((q[1:] * q[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
+    signs = np.concatenate([np.ones((min(len(q), 1), *q.shape[1:-1])), np.cumprod(turned, axis=0)])
+    return q * signs[..., None]
