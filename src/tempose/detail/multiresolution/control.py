@@ -106,7 +106,8 @@ def make_control(skin: SkinnedMesh, V: FloatArray | None = None, percent: float 
     count = round(n * percent / 100)
     if count < 8:
         raise ValueError(
-            f"percent must leave 8 vertices or more; {percent} % of {n} are {count}, take {800 / n:.3g} or more"
+            f"percent must leave 8 vertices or more; {percent} % of {n} are {count}, "
+            f"take {800 / n:.3g} or more"
         )
     frame = skin.mesh.vertices if V is None else np.asarray(V, dtype=np.float64)
     collapses = collapse_edges(frame, skin.mesh.faces, count)

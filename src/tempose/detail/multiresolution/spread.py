@@ -43,9 +43,9 @@ def spreading(
 
     Notes
     -----
-    The kernel is ``-|x - y|`` with a constant, conditionally positive definite in any number of dimensions, so
-    skin weights may stand beside the coordinates, and the system of every vertex has a solution as long as no
-    two of its centres coincide.
+    The kernel is ``-|x - y|`` with a constant, conditionally positive definite in any number of dimensions,
+    so skin weights may stand beside the coordinates, and the system of every vertex has a solution as long as
+    no two of its centres coincide.
     """
     size = max(float(np.linalg.norm(np.ptp(V, axis=0))), 1e-300)
     X, C = V / size, centres / size
@@ -53,8 +53,7 @@ def spreading(
         X = np.column_stack([X, _APART / np.sqrt(2) * weights])
         C = np.column_stack([C, _APART / np.sqrt(2) * centre_weights])
     m = min(nearest, len(C))
-    _, near = KDTree(C).query(X, k=np.arange(1, m + 1))
-    near = np.asarray(near, dtype=np.int64)
+    near = np.asarray(KDTree(C).query(X, k=m)[1], dtype=np.int64).reshape(len(X), m)
     shares = np.concatenate(
         [
             _shares(X[s : s + _LARGEST_BLOCK], C[near[s : s + _LARGEST_BLOCK]])
