@@ -11,9 +11,11 @@ from tempose.cli.compare import compare
 from tempose.cli.convert import convert
 from tempose.cli.data import data
 from tempose.cli.demo import demo
+from tempose.cli.detail import detail
 from tempose.cli.info import info
 from tempose.cli.pairs import pairs
 from tempose.cli.render import render
+from tempose.cli.rig import rig
 from tempose.cli.signals import signals
 from tempose.cli.transfer import transfer
 
@@ -26,6 +28,8 @@ app.command()(demo)
 app.command()(transfer)
 app.command()(pairs)
 app.add_typer(signals)
+app.add_typer(rig)
+app.add_typer(detail)
 app.command()(info)
 app.command()(convert)
 app.command()(compare)

@@ -1,0 +1,127 @@
+"""`tempose detail pose`: the skeleton moves, cloth and flesh follow."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+import tempose
+from tempose._tables import read_table
+from tempose.cli import rig_options as given
+from tempose.cli.console import note, progress_bar, writing
+from tempose.cli.detail_words import parse_strength, read_mask
+from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Tolerance, UnitOption, Up, check_out
+from tempose.cli.report import make_report, write_report
+from tempose.cli.rig_files import load_detail, load_rig
+from tempose.cli.signals_files import check_folder
+from tempose.cli.signals_options import merged_options
+from tempose.cli.transfer_inputs import load_mapping
+
+if TYPE_CHECKING:
+    from tempose.clips import MeshClip, SkeletonClip
+    from tempose.detail import DetailModel
+
+Out = Annotated[
+    Path,
+    typer.Option(
+        "-o",
+        "--out",
+        metavar="OUT",
+        help="Its ending chooses the format; a folder or name.####.obj takes frames.",
+    ),
+]
+
+
+def pose(  # numpydoc ignore=PR01
+    model_file: given.ModelFile,
+    motion_file: given.Motion = None,
+    *,
+    out: Out,
+    mapping: given.Mapping = None,
+    strength: given.Strength = None,
+    damp: given.Damp = None,
+    mask: given.Mask = None,
+    proportions: given.Proportions = None,
+    report: given.ReportFile = None,
+    from_up: FromUp = None,
+    from_unit: FromUnit = None,
+    from_fps: FromFps = None,
+    clip: Clip = None,
+    up: Up = None,
+    unit: UnitOption = None,
+    tolerance: Tolerance = None,
+) -> None:
+    """Pose a model by a motion of its skeleton: edited in another package, or of another clip."""
+    began = time.perf_counter()
+    options = merged_options(locals(), "model_file", "motion_file", "out", "report", "began")
+    check_out(out)
+    if report is not None:
+        check_folder(report)
+    if tolerance is not None and out.suffix.lower() != ".glb":
+        raise ValueError(f"{out}: --tolerance is for .glb")
+    if damp is not None and not 0 < damp < np.inf:
+        raise ValueError(f"--damp must be a positive number of seconds, got {damp}")
+    strengths = parse_strength(strength)
+    factors = None if proportions is None else read_table(proportions)
+    names = load_mapping(mapping)
+    model = load_detail(model_file)
+    settings: dict[str, Any] = {"strength": strengths, "damp": damp, "mask": read_mask(mask)}
+    reading = {"up": from_up, "unit": from_unit, "fps": from_fps, "clip": clip}
+    motion = None if motion_file is None else _load_motion(motion_file, model, names, reading)
+    warnings = _far(model, motion)
+    with progress_bar() as progress:
+        progress(0, 0, "posing")
+        if factors is not None:
+            settings["proportions"] = factors
+        posed = model.pose(motion, **settings)
+    _write(posed, out, up, unit, tolerance)
+    if report is not None:
+        inputs = {"model": str(model_file), "motion": motion_file, "out": str(out)}
+        write_report(report, make_report("detail pose", inputs, options, {"warnings": warnings}, began))
+    note(f"wrote {out}: {posed.n_frames} frames at {posed.fps:.6g} fps, {len(posed.rest)} vertices")
+
+
+def _load_motion(
+    path: str, model: DetailModel, mapping: dict[str, str] | None, reading: dict[str, Any]
+) -> SkeletonClip:
+    from tempose.rigging.motions import match_motion
+
+    if Path(path).suffix.lower() == ".tempose":
+        motion = load_rig(Path(path)).motion
+    else:
+        motion = tempose.formats.load_skeleton_clip(path, **reading)
+        note(tempose.formats.describe(motion))
+    try:
+        return match_motion(model.rig_.skin.skeleton, motion, mapping)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _far(model: DetailModel, motion: SkeletonClip | None) -> list[str]:
+    if motion is None:
+        return []
+    far = np.asarray(model.far(motion))
+    share = float((far > 1).mean())
+    if share == 0:
+        return []
+    worst = int(far.argmax())
+    warning = (
+        f"{100 * share:.0f} % of the frames are far from what was learned (frame {worst} most, "
+        f"{far[worst]:.2g} times the usual distance); detail there is a guess"
+    )
+    note(f"note: {warning}")
+    return [warning]
+
+
+def _write(clip: MeshClip, out: Path, up: str | None, unit: str | None, tolerance: float | None) -> None:
+    with progress_bar() as progress, writing(out):
+        if tolerance is None:
+            tempose.save(out, clip, up=up, unit=unit, progress=progress)
+        else:
+            from tempose.formats.glb import write
+
+            write(out, clip, tolerance=tolerance, progress=progress)
