@@ -1,0 +1,107 @@
+"""Gaussian processes that share inputs and observations, one for each region, queried together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose.detail.learners.features import Features, TwoFrames
+from tempose.detail.training import Inputs, Mixture
+from tempose.regression import GaussianProcess, InducingProcess, Kernel, choose_inducing
+from tempose.typing import FloatArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class KernelPredictor:
+    """A Gaussian process for each of R regions."""
+
+    features: Features | TwoFrames
+    """Columns of the inputs."""
+    kernels: Sequence[Kernel | None]
+    """R or 1, for outputs of variance 1; None predicts the mean."""
+    X: FloatArray
+    """(T, P) columns of the training."""
+    spreads: FloatArray
+    """(R or 1,) variance of one coordinate over the training, times what blocks left out say that predicted
+    variances lack, metres squared."""
+    inducing: int = 0
+    """At most so many frames are compared with; 0 for all."""
+    processes: Sequence[GaussianProcess | InducingProcess | None] = ()
+    """R or 1; made from the rest."""
+
+    def __post_init__(self) -> None:
+        made = [None if kernel is None else self._process(kernel) for kernel in self.kernels]
+        object.__setattr__(self, "processes", made)
+
+    def _process(self, kernel: Kernel) -> GaussianProcess | InducingProcess:
+        if not 0 < self.inducing < len(self.X):
+            return GaussianProcess(kernel, self.X)
+        return InducingProcess(kernel, self.X, self.X[choose_inducing(kernel, self.X, self.inducing)])
+
+    def mix(self, inputs: Inputs) -> Mixture:
+        """Predict the residuals of some frames.
+
+        Parameters
+        ----------
+        inputs : Inputs
+            Q frames.
+
+        Returns
+        -------
+        Mixture
+            Weights of the training frames, variances.
+        """
+        X = self.features(inputs)
+        weights = np.zeros((len(self.kernels), len(X), len(self.X)))
+        variance = np.ones((len(X), len(self.kernels)))
+        for r, process in enumerate(self.processes):
+            if process is not None:
+                weights[r] = process.weights(X)
+                variance[:, r] = process.variance(X)
+        return Mixture(weights, variance * self.spreads)
+
+
+def unit_grams(grams: FloatArray, sizes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Scale centred Gram matrices to outputs of variance 1.
+
+    Parameters
+    ----------
+    grams : (R, T, T) float
+        Inner products of centred residuals, metres squared.
+    sizes : (R,) float
+        Coordinates of each region.
+
+    Returns
+    -------
+    grams : (R, T, T) ndarray
+        With trace T, or zero where there is nothing to learn.
+    spreads : (R,) ndarray
+        Variance of one coordinate, metres squared.
+    """
+    T = grams.shape[1]
+    traces = np.trace(grams, axis1=1, axis2=2)
+    spreads = traces / (T * np.maximum(sizes, 1e-12))
+    # rounding of inner products is no residual
+    alive = traces > 1e-12 * max(float(traces.max(initial=0.0)), 1e-300)
+    scale = np.where(alive, T / np.where(alive, traces, 1.0), 0.0)
+    return grams * scale[:, None, None], spreads * alive
+
+
+def spread_frames(T: int, most: int) -> IntArray:
+    """Choose frames evenly.
+
+    Parameters
+    ----------
+    T : int
+        Number of frames.
+    most : int
+        At most so many are chosen.
+
+    Returns
+    -------
+    (min(T, most),) ndarray
+        Sorted frames.
+    """
+    return np.unique(np.linspace(0, T - 1, min(T, most)).round().astype(np.int64))

@@ -1,0 +1,82 @@
+"""A Gaussian process for each region of the body, with length scales of its own for every joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tempose.detail.learners.calibration import variance_factor
+from tempose.detail.learners.features import Features
+from tempose.detail.learners.kernel_predictor import KernelPredictor, spread_frames, unit_grams
+from tempose.detail.training import Training
+from tempose.regression import Kernel, fit_kernel, one_blas_thread
+from tempose.typing import FloatArray, IntArray, Progress, silent
+
+
+@dataclass(frozen=True)
+class RegionalGaussianProcess:
+    """Gaussian processes on angles and velocities; which joints matter is found for every region.
+
+    All regions begin from the most likely kernel of the whole body that knows one scale for angles and one
+    for velocities; a prior keeps their scales near it unless the residuals say otherwise.
+    """
+
+    lags: tuple[int, ...] = (0,)
+    """Frames back at which velocities are seen."""
+    prior: float = 0.5
+    """Weight of the squared distance of logarithmic scales from those of the whole body."""
+    iterations: int = 25
+    """Largest number of steps for each region."""
+    judged: int = 160
+    """At most so many frames judge kernels."""
+    inducing: int = 400
+    """At most so many frames are compared with at a query; 0 for all."""
+    name: str = "regional-gp"
+    """Name in tables and options."""
+    progress: Progress = silent
+    """Told about every region."""
+
+    def fit(self, training: Training) -> KernelPredictor:
+        """Learn from T frames.
+
+        Parameters
+        ----------
+        training : Training
+            Inputs and Gram matrices.
+
+        Returns
+        -------
+        KernelPredictor
+            One mixture for each region.
+        """
+        inputs = training.inputs
+        features = Features.of(inputs, self.lags)
+        X, groups, blocks = features(inputs), features.groups(inputs), features.blocks(inputs)
+        grams, spreads = unit_grams(training.centred(), training.sizes)
+        kernels: list[Kernel | None] = [None] * len(grams)
+        if len(X) < 3 or not spreads.any():
+            return KernelPredictor(features, kernels, X, spreads)
+        some = spread_frames(len(X), self.judged)
+        seen, S = X[some], grams[:, some[:, None], some]
+        whole = np.einsum("r,rij->ij", spreads * training.sizes, S)
+        with one_blas_thread():
+            start = _whole_body(seen, groups, blocks, whole * len(some) / np.trace(whole))
+            factors = np.ones(len(grams))
+            for r in np.flatnonzero(spreads):
+                fit = fit_kernel(
+                    seen, groups, S[r], starts=[start], prior=self.prior, iterations=self.iterations
+                )
+                kernels[r] = fit.kernel
+                factors[r] = variance_factor(fit.kernel, seen, S[r], inputs.chains[some])
+                self.progress(int(r) + 1, len(grams), "regions")
+        return KernelPredictor(features, kernels, X, factors * spreads, self.inducing)
+
+
+def _whole_body(X: FloatArray, groups: IntArray, blocks: IntArray, S: FloatArray) -> Kernel:
+    """Most likely kernel with one scale a block, given to all groups of the block."""
+    columns = np.unique(blocks, return_inverse=True)[1]
+    kernel = fit_kernel(X, columns, S).kernel
+    block_of = np.zeros(groups.max() + 1, dtype=np.int64)
+    block_of[groups] = columns
+    return Kernel(kernel.smooth, kernel.linear, kernel.noise, kernel.precision[block_of], groups)
