@@ -30,7 +30,7 @@ def gram_errors(grams: FloatArray, weights: FloatArray, train: IntArray, test: I
     Notes
     -----
     Where regions have weights of their own, a vertex in several of them takes the mean of their predictions
-    by its shares; its squared error is at most the mean of theirs, which is what the sum over regions returns.
+    by its shares; its squared error is at most the mean of theirs, which is what the sum over regions is.
     """
     R, T = grams.shape[:2]
     errors = np.zeros((len(test), R))
