@@ -16,6 +16,7 @@ from tempose.render.colors import Picture
 from tempose.render.drawing import save_drawing
 from tempose.rigging.pictures.bones import bone_lines
 from tempose.rigging.pictures.charts import draw_frame_errors
+from tempose.rigging.pictures.views import abreast, body_views
 from tempose.rigging.pictures.weights import weight_colors
 from tempose.rigging.rig import Rig
 from tempose.typing import FloatArray, Progress, silent
@@ -61,15 +62,12 @@ def plot_rig(
     place = Path(folder)
     place.mkdir(exist_ok=True)
     written = [place / "skeleton.png", place / "weights.png"]
-    views = ("front", "three-quarter", "side", "back")
-    still = rest_clip(rig)
-    save_png(
-        contact_sheet(still, 1, views, cell=420, theme=theme, segments=bone_lines(rest_motion(rig))),
-        written[0],
-    )
+    names, still, at_rest = ("front", "three-quarter", "side", "back"), rest_clip(rig), rest_motion(rig)
+    look: dict[str, Any] = {"names": names, "views": body_views(at_rest, names), "cell": 420, "theme": theme}
+    save_png(abreast(still, 1, segments=bone_lines(at_rest), **look), written[0])
     progress(1, 4, "drawing pictures")
     colors = weight_colors(rig.skin.weights, rig.skin.skeleton)
-    save_png(contact_sheet(still, 1, views, cell=420, theme=theme, colors=colors), written[1])
+    save_png(abreast(still, 1, colors=colors, **look), written[1])
     progress(2, 4, "drawing pictures")
     if clip is None or clip.n_frames < 2:
         return written
@@ -77,9 +75,10 @@ def plot_rig(
         raise ValueError(
             f"clip must have the {rig.motion.n_frames} frames of the rig's motion, got {clip.n_frames}"
         )
-    save_png(rig_sheet(rig, clip, theme=theme), place / "frames.png")
+    V = rig.vertices()
+    save_png(rig_sheet(rig, clip, V, theme=theme), place / "frames.png")
     progress(3, 4, "drawing pictures")
-    errors = {"skin alone": frame_errors(clip, rig.vertices())}
+    errors = {"skin alone": frame_errors(clip, V)}
     drawing = draw_frame_errors(errors, theme=theme)
     charts = [place / f"frame-errors.{suffix}" for suffix in ("png", "svg")]
     for path in charts:
@@ -126,9 +125,10 @@ def rest_clip(rig: Rig) -> MeshClip:
 def rig_sheet(
     rig: Rig,
     clip: MeshClip,
+    V: FloatArray | None = None,
     frames: int | Sequence[int] = _MOMENTS,
     *,
-    views: Sequence[Any] = ("front",),
+    views: Sequence[Any] | None = None,
     cell: int = 260,
     theme: str | Theme = "light",
 ) -> Picture:
@@ -140,10 +140,12 @@ def rig_sheet(
         Any.
     clip : MeshClip
         T frames, as many as the motion of the rig.
+    V : (T, n, 3) float, optional
+        The skin in the motion of the rig, where it is known.
     frames : int or sequence of int, default 7
         How many moments, or which.
-    views : sequence, default ("front",)
-        As for `tempose.render.contact_sheet`.
+    views : sequence, optional
+        As for `tempose.render.contact_sheet`; by default before the body as it stands half way.
     cell : int, default 260
         Height of a cell, pixels.
     theme : str or Theme, default "light"
@@ -154,27 +156,17 @@ def rig_sheet(
     (height, width, 3) ndarray of uint8
         sRGB picture.
     """
-    shown = _chosen(frames, clip.n_frames)
-    mesh = clip.mesh
-    some = MeshClip(clip.vertices[shown], mesh, clip.fps)
-    motion = rig.motion.frames(np.array(shown))
-    skin = MeshClip(rig.vertices(motion).astype(np.float32), mesh, clip.fps)
-    lines = bone_lines(motion)
+    skin = MeshClip((rig.vertices() if V is None else V).astype(np.float32), clip.mesh, clip.fps)
+    middle = body_views(rig.motion, ("front",), clip.n_frames // 2)
     return contact_sheet(
-        [some, skin],
-        len(shown),
-        views,
+        [clip, skin],
+        frames,
+        middle if views is None else views,
         cell=cell,
         names=["clip", "skin alone"],
-        segments=[lines, None],
+        segments=[bone_lines(rig.motion), None],
         theme=theme,
     )
-
-
-def _chosen(frames: int | Sequence[int], count: int) -> list[int]:
-    if isinstance(frames, int):
-        return sorted(set(np.linspace(0, count - 1, min(frames, count)).round().astype(int).tolist()))
-    return [int(t) for t in frames]
 
 
 def frame_errors(clip: MeshClip, V: FloatArray) -> FloatArray:
