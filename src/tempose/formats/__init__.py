@@ -11,6 +11,7 @@ from tempose.formats.registry import (
     load_skin,
 )
 from tempose.formats.saving import save
+from tempose.formats.skin_saving import save_skin
 
 __all__ = [
     "FORMATS",
@@ -23,4 +24,5 @@ __all__ = [
     "load_skeleton_clip",
     "load_skin",
     "save",
+    "save_skin",
 ]

@@ -41,6 +41,9 @@ FORMATS: dict[str, Format] = {
 GLTF_SUFFIXES = (".glb", ".gltf")
 """The two containers of glTF 2.0."""
 
+USD_SUFFIXES = (".usda", ".usdc", ".usd")
+"""Text, binary, and either of them."""
+
 
 def known_suffix(place: str) -> str:
     """Check that a file exists and is of a kind that some reader knows.

@@ -11,7 +11,8 @@ import numpy as np
 from tempose.typing import FloatArray, IntArray, Progress
 
 VERTEX_DATA, INDEX_DATA = 34962, 34963
-_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3"}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+_COMPONENTS = {"<f4": 5126, "<u4": 5125, "<u2": 5123}
 
 AnyArray: TypeAlias = FloatArray | IntArray
 
@@ -30,7 +31,13 @@ class Buffer:
     """Bytes so far."""
 
     def add(
-        self, make: Callable[[], AnyArray], shape: tuple[int, int], target: int | None, bounds: bool = False
+        self,
+        make: Callable[[], AnyArray],
+        shape: tuple[int, int],
+        target: int | None,
+        bounds: bool = False,
+        *,
+        dtype: str | None = None,
     ) -> int:
         """Append float32 data, or uint32 for indices.
 
@@ -44,22 +51,26 @@ class Buffer:
             `VERTEX_DATA`, `INDEX_DATA`, or None for keys.
         bounds : bool, default False
             Whether to state the smallest and largest values, as glTF wants for positions and times.
+        dtype : str, optional
+            ``"<u2"`` for small whole numbers; rows must fill a multiple of four bytes.
 
         Returns
         -------
         int
             Index of the accessor.
         """
+        dtype = dtype or ("<u4" if target == INDEX_DATA else "<f4")
         accessor: dict[str, Any] = {
             "bufferView": len(self.views),
-            "componentType": 5125 if target == INDEX_DATA else 5126,
+            "componentType": _COMPONENTS[dtype],
             "count": shape[0],
             "type": _TYPES[shape[1]],
         }
         if bounds:
             values = make()
             accessor["min"], accessor["max"] = values.min(axis=0).tolist(), values.max(axis=0).tolist()
-        view: dict[str, Any] = {"buffer": 0, "byteOffset": self.size, "byteLength": 4 * shape[0] * shape[1]}
+        length = int(dtype[-1]) * shape[0] * shape[1]
+        view: dict[str, Any] = {"buffer": 0, "byteOffset": self.size, "byteLength": length}
         if target is not None:
             view["target"] = target
         self.accessors.append(accessor)
@@ -82,6 +93,6 @@ class Buffer:
             In order.
         """
         for i, (make, accessor) in enumerate(zip(self.makers, self.accessors)):
-            dtype = "<u4" if accessor["componentType"] == 5125 else "<f4"
+            dtype = next(name for name, code in _COMPONENTS.items() if code == accessor["componentType"])
             yield np.ascontiguousarray(make(), dtype=dtype).tobytes()
             progress(i + 1, len(self.makers), "writing")

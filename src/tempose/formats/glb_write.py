@@ -97,7 +97,7 @@ def write(
     diagonal = mesh.diagonal or 1.0
     layout = lay_out(mesh)
     buffer = Buffer()
-    head = _head(mesh, layout, buffer)
+    head = mesh_head(mesh, layout, buffer)
     off = np.linalg.norm(mesh.vertices.astype(np.float32) - mesh.vertices, axis=1)
     frames, K, largest, rms = 0, 0, float(off.max()), float(np.sqrt((off**2).mean()))
     if isinstance(thing, MeshClip):
@@ -113,19 +113,36 @@ def write(
 
 
 def _check(path: Any, thing: Any, up: str | None, unit: float | None, tolerance: float | None) -> None:
-    if not str(path).lower().endswith(".glb"):
-        raise ValueError(f"path must end in .glb, got {os.fspath(path)!r}")
     if not isinstance(thing, Mesh | MeshClip):
         raise ValueError(f"thing must be a Mesh or a MeshClip to go into a GLB, got {type(thing).__name__}")
     if up not in (None, "y") or unit not in (None, 1.0):
         raise ValueError(f"a GLB is always Y up and in metres, got up {up!r} and unit {unit}; leave them out")
     if tolerance is not None and not 0 < tolerance < float("inf"):
         raise ValueError(f"tolerance must be a positive percentage, got {tolerance}")
-    mesh = thing.mesh if isinstance(thing, MeshClip) else thing
-    if not len(mesh.faces):
-        raise ValueError("a GLB needs at least one face, got none")
+    check_mesh(path, thing.mesh if isinstance(thing, MeshClip) else thing)
     if isinstance(thing, MeshClip) and not thing.n_frames:
         raise ValueError("a GLB clip needs at least one frame, got none")
+
+
+def check_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
+    """Refuse what no GLB file can hold.
+
+    Parameters
+    ----------
+    path : path-like
+        Final name.
+    mesh : Mesh
+        What is to be written.
+
+    Raises
+    ------
+    ValueError
+        If the name does not end in ``.glb``, there is no face, or there are too many or too large numbers.
+    """
+    if not str(path).lower().endswith(".glb"):
+        raise ValueError(f"path must end in .glb, got {os.fspath(path)!r}")
+    if not len(mesh.faces):
+        raise ValueError("a GLB needs at least one face, got none")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
         raise ValueError("vertices must fit into float32 to go into a GLB")
     if len(mesh.vertices) > _MOST_EXACT:
@@ -140,8 +157,23 @@ def _targets(clip: MeshClip, tolerance: float | None, progress: Progress) -> Tar
     return frame_targets(clip, progress)
 
 
-def _head(mesh: Mesh, layout: Layout, buffer: Buffer) -> dict[str, Any]:
-    """Describe the still mesh in JSON, its arrays queued in `buffer`."""
+def mesh_head(mesh: Mesh, layout: Layout, buffer: Buffer) -> dict[str, Any]:
+    """Describe the still mesh in JSON, its arrays queued in `buffer`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    layout : Layout
+        How its vertices are split.
+    buffer : Buffer
+        Takes its arrays.
+
+    Returns
+    -------
+    dict
+        One scene of one node, whose mesh has one primitive; accessors and buffers are still to be added.
+    """
     k = len(layout.vertex_of)
     V = mesh.vertices.astype(np.float32)[layout.vertex_of]
     N = UnitNormals(mesh.faces, len(mesh.vertices))(mesh.vertices)[layout.vertex_of]
