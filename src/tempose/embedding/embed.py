@@ -17,6 +17,7 @@ from tempose.embedding.facing import axis_vector, body_frame, find_side, nearest
 from tempose.embedding.fallback import average_body
 from tempose.embedding.heat import heat_weights
 from tempose.embedding.human import NAMES, SIDES
+from tempose.embedding.inside import pull_inside
 from tempose.embedding.place import (
     HIPS_BACK,
     Arm,
@@ -169,7 +170,9 @@ def _placed(body: Attempt, wanted: FloatArray | None, report: dict[str, Any]) ->
         "stature": ends.size / WAY_PER_STATURE,
     }
     trunk = replace(trunk, hips=trunk.hips - HIPS_BACK * ends.size * np.cross(side, spine))
-    joints, tips = _joints(trunk, arms, legs, side)
+    placed, tips = _joints(trunk, arms, legs, side)
+    joints = pull_inside(cells, placed, ends.size)
+    report["moved_inside"] = [name for name, a, b in zip(NAMES, placed, joints) if (a != b).any()]
     ratios = unlike_bones(arms, legs)
     report["side_ratios"] = ratios
     reasons = doubts(body.penalty, terms, clearness, ratios) + upside(spine, wanted)

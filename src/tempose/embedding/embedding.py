@@ -12,7 +12,7 @@ import numpy as np
 
 from tempose._validate import as_floats, read_only
 from tempose.clips import Skeleton
-from tempose.embedding.human import NAMES, PARENTS, role_skeleton
+from tempose.embedding.human import NAMES, PARENTS, joint_skeleton, role_skeleton
 from tempose.typing import FloatArray, IntArray
 
 
@@ -67,3 +67,8 @@ class Embedding:
     def skeleton(self) -> Skeleton:
         """All 21 body roles: the 18 joints, chest and clavicles."""
         return role_skeleton(self.joints, dict(self.ends))
+
+    @cached_property
+    def joint_skeleton(self) -> Skeleton:
+        """The 18 joints alone."""
+        return joint_skeleton(self.joints, self.ends)

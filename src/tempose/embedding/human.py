@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from tempose.clips import Skeleton
@@ -68,3 +70,24 @@ def role_skeleton(joints: FloatArray, ends: dict[str, FloatArray]) -> Skeleton:
     tips = [ends[name] - at[name] if name in ends else np.full(3, np.nan) for name in names]
     parents = [names.index(above) if above else -1 for _, above in chain]
     return Skeleton(names, np.array(parents), np.array(offsets), tips=np.array(tips))
+
+
+def joint_skeleton(joints: FloatArray, ends: Mapping[str, FloatArray]) -> Skeleton:
+    """Build the skeleton of the 18 embedded joints alone.
+
+    Parameters
+    ----------
+    joints : (18, 3) float
+        Positions in the order of `NAMES`, metres.
+    ends : mapping of str to (3,) float
+        Far end of each bone of `TERMINALS`.
+
+    Returns
+    -------
+    Skeleton
+        18 joints; rest rotations are the identity.
+    """
+    P = np.asarray(joints, dtype=np.float64)
+    offsets = [p - (P[above] if above >= 0 else 0.0) for p, above in zip(P, PARENTS)]
+    tips = [ends[name] - P[j] if name in ends else np.full(3, np.nan) for j, name in enumerate(NAMES)]
+    return Skeleton(NAMES, np.array(PARENTS), np.array(offsets), tips=np.array(tips))

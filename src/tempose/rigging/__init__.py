@@ -1,6 +1,7 @@
 """A skeleton for every clip: rigs from meshes, clips and files, and the motion that follows a clip."""
 
-from tempose.rigging.fit import fit_rig
+from tempose.rigging.fit import fit_rig, rest_clip
+from tempose.rigging.proportions import change_proportions
 from tempose.rigging.rig import Rig
 
-__all__ = ["Rig", "fit_rig"]
+__all__ = ["Rig", "change_proportions", "fit_rig", "rest_clip"]

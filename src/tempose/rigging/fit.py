@@ -1,23 +1,32 @@
-"""The whole way from a clip to a rig."""
+"""The whole way from a clip or a mesh to a rig."""
 
 from __future__ import annotations
 
+import os
+import time
 from dataclasses import asdict
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from tempose.clips import Mesh, MeshClip, Skeleton, SkinnedMesh
-from tempose.embedding import embed_skeleton, heat_weights
+from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
+from tempose.clips.blocks import read_block
 from tempose.metrics import compare
 from tempose.rigging.pose_fit import fit_poses
 from tempose.rigging.rig import Blending, Rig
+from tempose.rigging.skeletons import Bound, given_skin, read_skeleton
+from tempose.rigging.skeletons.frames import frame_mesh, surest_human
 from tempose.typing import Progress, silent
+
+SkeletonLike = str | os.PathLike[str] | Skeleton | SkinnedMesh | Rig
+_STILL = 1e-6
+"""Share of D below which the frames of a clip are all the same."""
 
 
 def fit_rig(
-    clip: MeshClip,
-    skeleton: str | SkinnedMesh = "human",
+    clip: MeshClip | Mesh,
+    skeleton: SkeletonLike = "human",
     *,
     bones: int | None = None,
     frame: int | None = None,
@@ -28,15 +37,17 @@ def fit_rig(
 
     Parameters
     ----------
-    clip : MeshClip
-        T frames of n vertices.
-    skeleton : str or SkinnedMesh, default "human"
-        ``"human"`` puts 18 joints inside one frame; ``"auto"`` finds bones from the motion itself; a skin is
-        taken as it is.
+    clip : MeshClip or Mesh
+        T frames of n vertices. A still mesh gets a rig with one frame, at rest.
+    skeleton : str, path-like, Skeleton, SkinnedMesh or Rig, default "human"
+        ``"human"`` puts 18 joints inside one frame; ``"auto"`` finds bones from the motion itself. A file
+        (see `tempose.rigging.skeletons.read_skeleton`), a skeleton, a skin or another rig is brought to the
+        mesh: a skin of the same vertices is taken as it is, a skeleton is placed inside and gets heat
+        weights.
     bones : int, optional
         Number of bones for ``"auto"``.
     frame : int, optional
-        Frame that becomes the bind pose; by default the one in which the body is read most surely.
+        Frame that becomes the bind pose; by default the one whose skeleton fits the clip best.
     blending : str, default "linear"
         ``"linear"`` or ``"dual-quaternion"``.
     progress : Progress
@@ -45,34 +56,118 @@ def fit_rig(
     Returns
     -------
     Rig
-        Skin, motion and report.
+        Skin, motion and report. The report's ``warnings`` say what to doubt.
+
+    Raises
+    ------
+    ValueError
+        If an argument is wrong, the mesh is no human where one was asked for, or the skeleton lies outside
+        the mesh; the message names the measure and what to do.
     """
-    if isinstance(skeleton, str):
-        mesh = clip.mesh.with_vertices(clip.vertices[0 if frame is None else frame].astype(np.float64))
-        skin = _human(mesh)
-    else:
-        skin = skeleton
+    _check(clip, skeleton, bones, blending)
+    moving = clip if isinstance(clip, MeshClip) else MeshClip(clip.vertices[None], clip, source=clip.source)
+    clock = _Clock()
+    bound = _bound(moving, skeleton, bones, frame, progress)
+    clock.stage("skeleton")
+    report: dict[str, Any] = {
+        "skeleton": skeleton if skeleton in ("human", "auto") else "given",
+        "joints": bound.skin.skeleton.n_joints,
+        "seconds": clock.seconds,
+        **bound.facts,
+        "warnings": list(bound.warnings),
+    }
+    if isinstance(clip, Mesh):
+        return Rig(bound.skin, rest_clip(bound.skin.skeleton), blending, report)
+    return _fitted(clip, bound.skin, blending, report, clock, progress)
+
+
+def rest_clip(skeleton: Skeleton) -> SkeletonClip:
+    """Make a clip of one frame in the rest pose.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        J joints.
+
+    Returns
+    -------
+    SkeletonClip
+        One frame.
+    """
+    assert skeleton.rest_rotations is not None
+    return SkeletonClip(skeleton, skeleton.rest_rotations[None], skeleton.offsets[:1])
+
+
+def _check(clip: Any, skeleton: Any, bones: int | None, blending: str) -> None:
+    if not isinstance(clip, MeshClip | Mesh):
+        raise ValueError(f"clip must be a MeshClip or a Mesh, got {type(clip).__name__}")
+    if isinstance(clip, MeshClip) and clip.n_frames == 0:
+        raise ValueError("clip must have at least one frame, got none")
+    if blending not in ("linear", "dual-quaternion"):
+        raise ValueError(f"blending must be 'linear' or 'dual-quaternion', got {blending!r}")
+    if bones is not None and skeleton != "auto":
+        raise ValueError("bones is for skeleton 'auto'; every other skeleton has its own number of joints")
+    if skeleton == "auto" and (isinstance(clip, Mesh) or clip.n_frames < 2):
+        raise ValueError(
+            "skeleton 'auto' finds bones from motion and needs a clip of at least 2 frames; "
+            "use 'human' or a skeleton file for a still mesh"
+        )
+
+
+def _bound(
+    clip: MeshClip, skeleton: SkeletonLike, bones: int | None, frame: int | None, progress: Progress
+) -> Bound:
+    if isinstance(skeleton, str) and skeleton == "human":
+        return surest_human(clip, frame, progress)
+    if isinstance(skeleton, str) and skeleton == "auto":
+        skin, facts = import_module("tempose.rigging.joints").auto_skin(clip, bones=bones)
+        facts = dict(facts)
+        return Bound(skin, facts, tuple(facts.pop("warnings", ())))
+    mesh = clip.mesh if frame is None else frame_mesh(clip, frame)
+    if isinstance(skeleton, str | os.PathLike):
+        skeleton = read_skeleton(skeleton, mesh)
+    return given_skin(mesh, skeleton.skin if isinstance(skeleton, Rig) else skeleton)
+
+
+def _fitted(
+    clip: MeshClip,
+    skin: SkinnedMesh,
+    blending: Blending,
+    report: dict[str, Any],
+    clock: _Clock,
+    progress: Progress,
+) -> Rig:
     fitted = fit_poses(skin, clip.vertices, fps=clip.fps, blending=blending, progress=progress)
-    report: dict[str, Any] = {"warnings": []}
+    clock.stage("poses")
     rig = Rig(skin, fitted.motion, blending, report)
-    errors = compare(clip.vertices, rig.vertices(), skin.mesh.diagonal)
-    return Rig(skin, fitted.motion, blending, {**report, "errors": asdict(errors)})
+    errors = asdict(compare(clip.vertices, rig.vertices(), skin.mesh.diagonal))
+    clock.stage("errors")
+    if _stands_still(clip):
+        report["warnings"].append(
+            f"all {clip.n_frames} frames are the same; the skeleton does not move, and nothing can be "
+            "learned from the clip"
+        )
+    return Rig(skin, fitted.motion, blending, {**report, "errors": errors})
 
 
-def _human(mesh: Mesh) -> SkinnedMesh:
-    embedding = embed_skeleton(mesh)
-    parents = embedding.parents
-    offsets = np.array(
-        [
-            p - (embedding.joints[parents[j]] if parents[j] >= 0 else 0.0)
-            for j, p in enumerate(embedding.joints)
-        ]
-    )
-    tips = np.array(
-        [
-            embedding.ends[name] - embedding.joints[j] if name in embedding.ends else np.full(3, np.nan)
-            for j, name in enumerate(embedding.names)
-        ]
-    )
-    skeleton = Skeleton(embedding.names, parents, offsets, tips=tips)
-    return SkinnedMesh(mesh, skeleton, heat_weights(mesh, skeleton))
+def _stands_still(clip: MeshClip) -> bool:
+    first = np.asarray(clip.vertices[0], dtype=np.float64)
+    least = _STILL * max(clip.mesh.diagonal, 1e-300)
+    for t in range(1, clip.n_frames):
+        if np.abs(read_block(clip.vertices, slice(t, t + 1), "vertices")[0] - first).max() > least:
+            return False
+    return clip.n_frames > 1
+
+
+class _Clock:
+    """Seconds a stage."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def stage(self, name: str) -> None:
+        """Note the end of a stage."""
+        now = time.perf_counter()
+        self.seconds[name] = round(now - self._last, 4)
+        self._last = now

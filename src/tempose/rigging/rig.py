@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -64,3 +66,50 @@ class Rig(Frozen):
         """
         motion = motion or self.motion
         return MeshClip(self.vertices(motion), self.skin.mesh, motion.fps, self.skin.mesh.source)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the rig as one ``.tempose`` file.
+
+        Parameters
+        ----------
+        path : path-like
+            Where to; the folder must exist.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        OSError
+            If the place cannot be written.
+        """
+        from tempose.rigging.saving import save_rig
+
+        return save_rig(self, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Rig:
+        """Read a rig that was saved.
+
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Returns
+        -------
+        Rig
+            Equal to what was saved, to the last bit.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        ValueError
+            If it is no rig, cut short, or of a newer version; the message names it.
+        """
+        from tempose.rigging.saving import load_rig
+
+        return load_rig(path)
