@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.clips import Skeleton
+from tempose.formats._joint_moves import local_offsets, local_rotations, rigid
 from tempose.formats.glb_binding import Binding
 from tempose.formats.glb_clips import Motion, distinct
 from tempose.formats.glb_container import Document
 from tempose.formats.glb_nodes import Nodes, chain
-from tempose.rotations import conjugate, from_matrix, multiply, polar_rotation, rotate
 from tempose.typing import FloatArray, IntArray
 
 
@@ -121,54 +121,7 @@ def rigid_parts(doc: Document, matrices: FloatArray) -> tuple[FloatArray, FloatA
     """
     if not np.isfinite(matrices).all():
         raise doc.top.error("expected finite joint transforms, found one that overflows")
-    # singular values of huge numbers overflow: only the direction matters
-    linear = matrices[..., :3, :3]
-    linear = linear / np.maximum(np.abs(linear).max(axis=(-1, -2), keepdims=True), 1e-300)
-    sign = np.where(np.linalg.det(linear) < 0, -1.0, 1.0)[..., None, None]
-    return from_matrix(polar_rotation(linear * sign)), matrices[..., :3, 3]
-
-
-def local_rotations(parents: IntArray, rotations: FloatArray) -> FloatArray:
-    """World rotations to rotations relative to the parent.
-
-    Parameters
-    ----------
-    parents : (J,) int
-        Parents, -1 for the root.
-    rotations : (..., J, 4) float
-        World rotations wxyz.
-
-    Returns
-    -------
-    (..., J, 4) ndarray
-        Local rotations.
-    """
-    local = np.array(rotations)
-    local[..., 1:, :] = multiply(conjugate(rotations[..., parents[1:], :]), rotations[..., 1:, :])
-    return local
-
-
-def local_offsets(parents: IntArray, rotations: FloatArray, positions: FloatArray) -> FloatArray:
-    """World positions to offsets in the basis of the parent.
-
-    Parameters
-    ----------
-    parents : (J,) int
-        Parents, -1 for the root.
-    rotations : (..., J, 4) float
-        World rotations wxyz.
-    positions : (..., J, 3) float
-        World positions.
-
-    Returns
-    -------
-    (..., J, 3) ndarray
-        Offsets; of the root its position.
-    """
-    offsets = np.array(positions)
-    bone = positions[..., 1:, :] - positions[..., parents[1:], :]
-    offsets[..., 1:, :] = rotate(conjugate(rotations[..., parents[1:], :]), bone)
-    return offsets
+    return rigid(matrices)
 
 
 def bind_skeleton(

@@ -2,44 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
-from tempose.clips import Skeleton
+from tempose.formats._joint_moves import Moves, reduce_moves
 from tempose.formats.glb_binding import Binding
 from tempose.formats.glb_clips import Motion
 from tempose.formats.glb_container import Document
-from tempose.formats.glb_joints import (
-    Joints,
-    bind_skeleton,
-    choose_joints,
-    local_offsets,
-    local_rotations,
-    rigid_parts,
-)
+from tempose.formats.glb_joints import Joints, bind_skeleton, choose_joints, rigid_parts
 from tempose.formats.glb_nodes import Nodes, world_matrices
 from tempose.formats.glb_parts import Geometry
-from tempose.kinematics import forward_kinematics
-from tempose.rotations import continuous, rotate
-from tempose.typing import BoolArray, FloatArray, IntArray
+from tempose.typing import FloatArray, IntArray
 
 _BLOCK = 512
-_STILL = 1e-6
-
-
-@dataclass(frozen=True)
-class Moves:
-    """A skeleton in motion."""
-
-    skeleton: Skeleton
-    """J joints; bone lengths are those of the clip."""
-    rotations: FloatArray
-    """(T, J, 4) local rotations."""
-    root: FloatArray
-    """(T, 3) path of the root."""
-    notes: tuple[str, ...]
-    """What a skeleton clip cannot hold."""
 
 
 def skeleton_moves(
@@ -69,28 +43,9 @@ def skeleton_moves(
     joints = choose_joints(doc, nodes, bindings, motion)
     rotations, positions = _sampled(doc, nodes, joints, motion)
     rest = bind_skeleton(doc, joints, bindings, world_matrices(nodes, {}))
-    offsets = local_offsets(joints.parents, rotations, positions)
-    size = float(np.linalg.norm(rest.offsets[1:], axis=1).sum()) or 1.0
-    fixed = np.array(rest.offsets)
-    moved = np.abs(offsets - fixed).max(axis=(0, 2)) > _STILL * size
-    carrying = _carrying(geometry, bindings, joints)
-    varies = np.ptp(offsets, axis=0).max(axis=1) > _STILL * size
-    anchor = (
-        _first_traveller(joints.parents, varies) if geometry is None else _anchor(joints.parents, carrying)
+    return reduce_moves(
+        rest, rotations, positions, None if geometry is None else _carrying(geometry, bindings, joints)
     )
-    # what lies between root and anchor keeps its bind pose: the root path makes up for it
-    moved[_path(joints.parents, anchor)] = False
-    fixed[moved] = offsets[:, moved].mean(axis=0)
-    root = _root_path(joints.parents, anchor, rotations, positions, fixed)
-    if np.abs(root - positions[:, 0]).max() <= _STILL * size:
-        root = positions[:, 0]
-    skeleton = replace(rest, offsets=fixed)
-    local = continuous(local_rotations(joints.parents, rotations))
-    _, reached = forward_kinematics(skeleton, local, root)
-    notes = _deviation(reached - positions, carrying, skeleton, size)
-    if not np.array_equal(root, positions[:, 0]):
-        notes = (f"The root follows {joints.names[anchor]!r}, the first joint that carries weight.", *notes)
-    return Moves(skeleton, local, root, notes)
 
 
 def _sampled(doc: Document, nodes: Nodes, joints: Joints, motion: Motion) -> tuple[FloatArray, FloatArray]:
@@ -105,57 +60,11 @@ def _sampled(doc: Document, nodes: Nodes, joints: Joints, motion: Motion) -> tup
     return rotations, positions
 
 
-def _carrying(geometry: Geometry | None, bindings: dict[int, Binding], joints: Joints) -> IntArray:
-    """Joints that move a vertex; all of them if nothing is drawn."""
+def _carrying(geometry: Geometry, bindings: dict[int, Binding], joints: Joints) -> IntArray:
+    """Joints that move a vertex; all of them if none does."""
     found: set[int] = set()
-    for part in geometry.parts if geometry is not None else ():
+    for part in geometry.parts:
         if part.skin is not None:
             used = np.unique(part.joints[part.weights > 0])
             found.update(bindings[part.skin].joints[j] for j in used)
     return np.array([j for j, node in enumerate(joints.nodes) if node in found or not found], dtype=np.int64)
-
-
-def _anchor(parents: IntArray, carrying: IntArray) -> int:
-    """Nearest common ancestor of the joints that carry weight."""
-    common: list[int] | None = None
-    for j in carrying:
-        path = _path(parents, int(j))
-        common = path if common is None else [i for i in common if i in set(path)]
-    return common[0] if common else 0
-
-
-def _path(parents: IntArray, joint: int) -> list[int]:
-    """Joint, parent, and so on up to the root."""
-    path = [joint]
-    while parents[path[-1]] >= 0:
-        path.append(int(parents[path[-1]]))
-    return path
-
-
-def _first_traveller(parents: IntArray, varies: BoolArray) -> int:
-    """Joint that travels below a chain of still ones; the root if there is none."""
-    best, at = 0, 0
-    while len(children := np.flatnonzero(parents == at)) == 1:
-        at = int(children[0])
-        best = at if varies[at] else best
-    return best
-
-
-def _root_path(
-    parents: IntArray, anchor: int, rotations: FloatArray, positions: FloatArray, offsets: FloatArray
-) -> FloatArray:
-    # joints above the anchor move nothing, so the root may stand wherever it puts the anchor right:
-    # exporters keep a still root above hips that travel
-    root = np.array(positions[:, anchor])
-    for j in _path(parents, anchor)[:-1]:
-        root -= rotate(rotations[:, parents[j]], offsets[j])
-    return root
-
-
-def _deviation(error: FloatArray, carrying: IntArray, skeleton: Skeleton, size: float) -> tuple[str, ...]:
-    off = np.linalg.norm(error[:, carrying], axis=-1).max(axis=0)
-    worst = int(off.argmax())
-    if off[worst] <= 1e-5 * size:
-        return ()
-    name = skeleton.names[int(carrying[worst])]
-    return (f"Joint translations vary and are held constant: {name!r} is off by up to {off[worst]:.4g} m.",)
