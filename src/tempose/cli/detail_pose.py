@@ -19,7 +19,6 @@ from tempose.cli.report import make_report, write_report
 from tempose.cli.rig_files import load_detail, load_rig
 from tempose.cli.signals_files import check_folder
 from tempose.cli.signals_options import merged_options
-from tempose.cli.transfer_inputs import load_mapping
 
 if TYPE_CHECKING:
     from tempose.clips import MeshClip, SkeletonClip
@@ -42,6 +41,7 @@ def pose(  # numpydoc ignore=PR01
     *,
     out: Out,
     mapping: given.Mapping = None,
+    missing_rest: given.MissingRest = False,
     strength: given.Strength = None,
     damp: given.Damp = None,
     mask: given.Mask = None,
@@ -56,6 +56,8 @@ def pose(  # numpydoc ignore=PR01
     tolerance: Tolerance = None,
 ) -> None:
     """Pose a model by a motion of its skeleton: edited in another package, or of another clip."""
+    from tempose.rigging.motions import read_mapping
+
     began = time.perf_counter()
     options = merged_options(locals(), "model_file", "motion_file", "out", "report", "began")
     check_out(out)
@@ -67,12 +69,14 @@ def pose(  # numpydoc ignore=PR01
         raise ValueError(f"--damp must be a positive number of seconds, got {damp}")
     strengths = parse_strength(strength)
     factors = None if proportions is None else read_table(proportions)
-    names = load_mapping(mapping)
+    names = None if mapping is None else read_mapping(mapping)
     model = load_detail(model_file)
     settings: dict[str, Any] = {"strength": strengths, "damp": damp, "mask": read_mask(mask)}
     reading = {"up": from_up, "unit": from_unit, "fps": from_fps, "clip": clip}
-    motion = None if motion_file is None else _load_motion(motion_file, model, names, reading)
-    warnings = _far(model, motion)
+    motion, warnings = None, list[str]()
+    if motion_file is not None:
+        motion, warnings = _load_motion(motion_file, model, names, missing_rest, reading)
+        warnings += _far(model, motion)
     with progress_bar() as progress:
         progress(0, 0, "posing")
         if factors is not None:
@@ -86,9 +90,9 @@ def pose(  # numpydoc ignore=PR01
 
 
 def _load_motion(
-    path: str, model: DetailModel, mapping: dict[str, str] | None, reading: dict[str, Any]
-) -> SkeletonClip:
-    from tempose.rigging.motions import match_motion
+    path: str, model: DetailModel, mapping: dict[str, str] | None, rest: bool, reading: dict[str, Any]
+) -> tuple[SkeletonClip, list[str]]:
+    from tempose.rigging.motions import matched_motion
 
     if Path(path).suffix.lower() == ".tempose":
         motion = load_rig(Path(path)).motion
@@ -96,14 +100,17 @@ def _load_motion(
         motion = tempose.formats.load_skeleton_clip(path, **reading)
         note(tempose.formats.describe(motion))
     try:
-        return match_motion(model.rig_.skin.skeleton, motion, mapping)
+        found = matched_motion(model.rig_.skin.skeleton, motion, mapping, missing="rest" if rest else "error")
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(
+            f"{path}: {error}; --map takes a file of them, --missing-rest leaves them at rest"
+        ) from None
+    for warning in found.warnings:
+        note(f"note: {warning}")
+    return found.motion, list(found.warnings)
 
 
-def _far(model: DetailModel, motion: SkeletonClip | None) -> list[str]:
-    if motion is None:
-        return []
+def _far(model: DetailModel, motion: SkeletonClip) -> list[str]:
     far = np.asarray(model.far(motion))
     share = float((far > 1).mean())
     if share == 0:

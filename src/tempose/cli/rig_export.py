@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tempose.cli.console import note, writing
+from tempose.cli.console import note, progress_bar, writing
+from tempose.cli.options import UnitOption, Up
 from tempose.cli.rig_files import RIG_ENDINGS, load_rig
 from tempose.cli.signals_files import check_folder
 
@@ -25,7 +26,9 @@ Out = Annotated[
 ]
 
 
-def export(rig_file: RigOrModel, out: Out) -> None:  # numpydoc ignore=PR01
+def export(
+    rig_file: RigOrModel, out: Out, up: Up = None, unit: UnitOption = None
+) -> None:  # numpydoc ignore=PR01
     """Write the skeleton and its motion, to be edited in Blender, Maya or any other package."""
     from tempose.rigging.export import export_rig
 
@@ -33,6 +36,8 @@ def export(rig_file: RigOrModel, out: Out) -> None:  # numpydoc ignore=PR01
         raise ValueError(f"{out}: a rig is written as {', '.join(RIG_ENDINGS)}, got {out.suffix!r}")
     check_folder(out)
     rig = load_rig(rig_file)
-    with writing(out):
-        export_rig(rig, out)
-    note(f"wrote {out}: {rig.skin.skeleton.n_joints} joints, {rig.motion.n_frames} frames")
+    with progress_bar() as progress, writing(out):
+        written = export_rig(rig, out, up=up, unit=unit, progress=progress)
+    for warning in written.warnings:
+        note(f"note: {warning}")
+    note(f"wrote {out}: {rig.skin.skeleton.n_joints} joints, {written.frames} frames")

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from tempose.detail import DetailModel
     from tempose.rigging import Rig
 
-_SKINS = (".glb", ".gltf", ".usd", ".usda", ".usdc")
 _WORDS = ("human", "auto")
 RIG_ENDINGS = (".bvh", ".glb", ".usda", ".usd", ".usdc")
 """What `tempose rig export` writes."""
@@ -80,39 +79,51 @@ def load_body(path: str, **reading: Any) -> Mesh | MeshClip:
     return body
 
 
-def load_skeleton(word: str) -> str | SkinnedMesh | Skeleton:
-    """Read what --skeleton was given.
+def check_skeleton(word: str) -> None:
+    """Refuse what --skeleton was given before a long clip is read.
 
     Parameters
     ----------
     word : str
         ``"human"``, ``"auto"`` or a file.
 
-    Returns
-    -------
-    str, SkinnedMesh or Skeleton
-        As `tempose.rigging.fit_rig` takes it.
-
     Raises
     ------
     ValueError
         If it is no such word and no such file.
     """
+    if word not in _WORDS and not Path(word).is_file():
+        raise ValueError(f"--skeleton must be human, auto or a file, found no file {word!r}")
+
+
+def load_skeleton(word: str, body: Mesh | MeshClip) -> str | SkinnedMesh | Skeleton:
+    """Read what --skeleton was given.
+
+    Parameters
+    ----------
+    word : str
+        ``"human"``, ``"auto"`` or a file.
+    body : Mesh or MeshClip
+        What shall have it.
+
+    Returns
+    -------
+    str, SkinnedMesh or Skeleton
+        As `tempose.rigging.fit_rig` takes it.
+    """
+    from tempose.clips import MeshClip, SkinnedMesh
+    from tempose.rigging.skeletons import read_skeleton
+
     if word in _WORDS:
         return word
     path = Path(word)
-    if not path.exists():
-        raise ValueError(f"--skeleton must be human, auto or a file, found no file {word!r}")
-    suffix = path.suffix.lower()
-    if suffix == ".tempose":
+    if path.suffix.lower() == ".tempose":
         return load_rig(path).skin
-    if suffix in _SKINS:
-        skin = tempose.formats.load_skin(path)
-        note(tempose.formats.describe(skin))
-        return skin
-    motion = tempose.formats.load_skeleton_clip(path)
-    note(tempose.formats.describe(motion))
-    return motion.skeleton
+    found = read_skeleton(path, body.mesh if isinstance(body, MeshClip) else body)
+    bound = isinstance(found, SkinnedMesh)
+    joints = (found.skeleton if bound else found).n_joints
+    note(f"{path.name}: {joints} joints, {'with' if bound else 'without'} weights")
+    return found
 
 
 def load_rig(path: Path) -> Rig:

@@ -10,7 +10,7 @@ from tempose.cli import signals_options as reading_options
 from tempose.cli.console import note, progress_bar, show_json, show_table, writing
 from tempose.cli.options import Clip, Group, Json, Start, Step, Stop, Topology
 from tempose.cli.report import make_report, write_report
-from tempose.cli.rig_files import check_kept_out, load_body, load_skeleton
+from tempose.cli.rig_files import check_kept_out, check_skeleton, load_body, load_skeleton
 from tempose.cli.signals_files import check_folder
 from tempose.cli.signals_options import merged_options
 
@@ -49,9 +49,10 @@ def fit(  # numpydoc ignore=PR01
         if path is not None:
             check_folder(path)
     check_fit(skeleton, bones, frame, blending)
-    bring = load_skeleton(skeleton)
+    check_skeleton(skeleton)
     body = load_body(body_file, up=up, unit=unit, fps=fps, group=group, clip=clip, topology=topology)
     body = trimmed(body, start, stop, step)
+    bring = load_skeleton(skeleton, body)
     loaded = time.perf_counter()
     rig = fitted(body, body_file, bring, bones=bones, frame=frame, blending=blending)
     done = time.perf_counter()

@@ -106,6 +106,12 @@ Mapping = Annotated[
         help='Joints with odd names: {"LeftForeArm": "left_forearm"}, theirs to ours.',
     ),
 ]
+MissingRest = Annotated[
+    bool,
+    typer.Option(
+        "--missing-rest", help="Joints of the rig that MOTION does not move stay at rest; else an error."
+    ),
+]
 Strength = Annotated[
     list[str] | None,
     typer.Option(
