@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from tempose.clips import MeshClip, SkeletonClip, SkinnedMesh
 from tempose.clips._frozen import Frozen
-from tempose.kinematics import linear_blend_skinning
+from tempose.kinematics import dual_quaternion_skinning, linear_blend_skinning
 from tempose.typing import FloatArray
 
 Blending = Literal["linear", "dual-quaternion"]
@@ -49,7 +49,8 @@ class Rig(Frozen):
             Posed vertices, metres.
         """
         motion = motion or self.motion
-        return linear_blend_skinning(self.skin, motion.rotations, motion.root_position, motion.skeleton)
+        pose = dual_quaternion_skinning if self.blending == "dual-quaternion" else linear_blend_skinning
+        return pose(self.skin, motion.rotations, motion.root_position, motion.skeleton)
 
     def clip(self, motion: SkeletonClip | None = None) -> MeshClip:
         """Pose the skin as a clip, without detail.
