@@ -6,6 +6,7 @@ from tempose.regression.gaussian_process import GaussianProcess
 from tempose.regression.inducing import InducingProcess, choose_inducing
 from tempose.regression.kernel import Kernel
 from tempose.regression.likelihood import GramLikelihood
+from tempose.regression.process_bank import ProcessBank
 from tempose.regression.ridge import RidgeRegression
 from tempose.regression.threads import one_blas_thread
 
@@ -15,6 +16,7 @@ __all__ = [
     "InducingProcess",
     "Kernel",
     "KernelFit",
+    "ProcessBank",
     "RidgeRegression",
     "blocked_folds",
     "choose_inducing",

@@ -52,6 +52,17 @@ class GaussianProcess:
         """
         return cho_solve(self._factor, self.kernel(self.X, X)).T
 
+    def inverse(self) -> FloatArray:
+        """Return the inverse covariance of the observations.
+
+        Returns
+        -------
+        (T, T) ndarray
+            Symmetric: ``weights(X) = kernel(X, self.X) @ inverse()``.
+        """
+        inverse = cho_solve(self._factor, np.eye(len(self.X)))
+        return 0.5 * (inverse + inverse.T)
+
     def variance(self, X: FloatArray) -> FloatArray:
         """Variance of a noisy observation of one output, given the T others.
 

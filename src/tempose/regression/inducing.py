@@ -81,6 +81,21 @@ class InducingProcess:
         known = np.square(solve_triangular(self._factor[0], V, lower=True)).sum(axis=0)
         return np.maximum(unseen, 0.0) + known + self.kernel.noise
 
+    def solvers(self) -> tuple[FloatArray, FloatArray]:
+        """Return what covariances with the inducing inputs are multiplied by.
+
+        Returns
+        -------
+        weights : (m, T) ndarray
+            ``weights(X) = kernel(X, self.inducing) @ weights``.
+        known : (m, m) ndarray
+            What ``k(x, inducing) @ known @ k(inducing, x)`` takes from the variance of the prior.
+        """
+        unwhiten = solve_triangular(self._lower, np.eye(len(self._lower)), lower=True)
+        weights = unwhiten.T @ cho_solve(self._factor, self._seen) / self.kernel.noise
+        inner = cho_solve(self._factor, unwhiten)
+        return weights, unwhiten.T @ (unwhiten - inner)
+
     def _whitened(self, X: FloatArray) -> FloatArray:
         return solve_triangular(self._lower, self.kernel(self.inducing, X), lower=True)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from tempose.detail.learners.features import Features, TwoFrames
 from tempose.detail.training import Inputs, Mixture
-from tempose.regression import GaussianProcess, InducingProcess, Kernel, choose_inducing
+from tempose.regression import Kernel, ProcessBank, choose_inducing
 from tempose.typing import FloatArray, IntArray
 
 
@@ -28,17 +28,20 @@ class KernelPredictor:
     variances lack, metres squared."""
     inducing: int = 0
     """At most so many frames are compared with; 0 for all."""
-    processes: Sequence[GaussianProcess | InducingProcess | None] = ()
-    """R or 1; made from the rest."""
+    bank: ProcessBank | None = field(init=False)
+    """Of the kernels that there are, made from the rest; None where there are none."""
 
     def __post_init__(self) -> None:
-        made = [None if kernel is None else self._process(kernel) for kernel in self.kernels]
-        object.__setattr__(self, "processes", made)
+        alive = [kernel for kernel in self.kernels if kernel is not None]
+        object.__setattr__(self, "bank", self._bank(alive) if alive else None)
 
-    def _process(self, kernel: Kernel) -> GaussianProcess | InducingProcess:
+    def _bank(self, alive: Sequence[Kernel]) -> ProcessBank:
         if not 0 < self.inducing < len(self.X):
-            return GaussianProcess(kernel, self.X)
-        return InducingProcess(kernel, self.X, self.X[choose_inducing(kernel, self.X, self.inducing)])
+            return ProcessBank(alive, self.X)
+        smooth, linear = (float(np.mean([getattr(k, part) for k in alive])) for part in ("smooth", "linear"))
+        precision = np.exp(np.mean([np.log(k.precision) for k in alive], axis=0))
+        usual = Kernel(smooth, linear, alive[0].noise, precision, alive[0].groups)
+        return ProcessBank(alive, self.X, choose_inducing(usual, self.X, self.inducing))
 
     def mix(self, inputs: Inputs) -> Mixture:
         """Predict the residuals of some frames.
@@ -54,13 +57,15 @@ class KernelPredictor:
             Weights of the training frames, variances.
         """
         X = self.features(inputs)
-        weights = np.zeros((len(self.kernels), len(X), len(self.X)))
-        variance = np.ones((len(X), len(self.kernels)))
-        for r, process in enumerate(self.processes):
-            if process is not None:
-                weights[r] = process.weights(X)
-                variance[:, r] = process.variance(X)
-        return Mixture(weights, variance * self.spreads)
+        R = len(self.kernels)
+        alive = [r for r in range(R) if self.kernels[r] is not None]
+        if self.bank is not None and len(alive) == R:
+            weights, variance = self.bank.query(X)
+        else:
+            weights, variance = np.zeros((R, len(X), len(self.X))), np.ones((R, len(X)))
+            if self.bank is not None:
+                weights[alive], variance[alive] = self.bank.query(X)
+        return Mixture(weights, variance.T * self.spreads)
 
 
 def unit_grams(grams: FloatArray, sizes: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -39,7 +39,7 @@ class NearestLearner:
         weight = np.where(features.blocks(inputs) == 1, self.momentum, 1.0)
         X = features(inputs) * weight
         wrong = _left_out(X, training)
-        return NearestPredictor(features, weight, X, wrong / training.sizes.sum())
+        return NearestPredictor(features, weight, X, float(wrong / training.sizes.sum()))
 
 
 def _left_out(X: FloatArray, training: Training) -> float:

@@ -26,9 +26,9 @@ class RegionalGaussianProcess:
     """Frames back at which velocities are seen."""
     prior: float = 0.5
     """Weight of the squared distance of logarithmic scales from those of the whole body."""
-    iterations: int = 25
-    """Largest number of steps for each region."""
-    judged: int = 160
+    iterations: int = 8
+    """Largest number of steps for each region; more do not predict better."""
+    judged: int = 120
     """At most so many frames judge kernels."""
     inducing: int = 400
     """At most so many frames are compared with at a query; 0 for all."""

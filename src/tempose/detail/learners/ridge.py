@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -45,7 +45,7 @@ class RidgeLearner:
         best = int(wrong.argmin())
         regression = RidgeRegression(X)
         penalty = self.penalties[best] * len(X) * max(regression.spread, 1e-12)
-        return RidgePredictor(features, weight, regression, penalty, wrong[best] / training.sizes.sum())
+        return RidgePredictor(features, weight, X, penalty, wrong[best] / training.sizes.sum())
 
     def _left_out(self, X: FloatArray, S: FloatArray, training: Training) -> FloatArray:
         """Mean squared error a frame for each penalty."""
@@ -72,12 +72,17 @@ class RidgePredictor:
     """Columns of the inputs."""
     weight: FloatArray
     """(P,) factor on each."""
-    regression: RidgeRegression
-    """Factorised training inputs."""
+    X: FloatArray
+    """(T, P) columns of the training, times their factors."""
     penalty: float
     """On squared slopes."""
     wrong: float
     """Mean squared error of one coordinate of frames left out in blocks, metres squared."""
+    regression: RidgeRegression = field(init=False)
+    """`X`, factorised."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "regression", RidgeRegression(self.X))
 
     def mix(self, inputs: Inputs) -> Mixture:
         """Predict the residuals of some frames.
