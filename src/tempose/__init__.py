@@ -15,13 +15,17 @@ if TYPE_CHECKING:
         clips,
         curves,
         datasets,
+        detail,
+        embedding,
         formats,
         geometry,
         kinematics,
         linalg,
         metrics,
         models,
+        regression,
         render,
+        rigging,
         rotations,
         samples,
         shape_spaces,
@@ -29,15 +33,19 @@ if TYPE_CHECKING:
         transfer,
     )
     from tempose.clips import MarkerClip, Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
+    from tempose.detail import DetailModel
     from tempose.formats import load, save
+    from tempose.rigging import Rig
     from tempose.signals import SignalModel
     from tempose.transfer import MotionTransfer
 
 _HOMES = {
+    "DetailModel": "tempose.detail",
     "MarkerClip": "tempose.clips",
     "Mesh": "tempose.clips",
     "MeshClip": "tempose.clips",
     "MotionTransfer": "tempose.transfer",
+    "Rig": "tempose.rigging",
     "SignalModel": "tempose.signals",
     "Skeleton": "tempose.clips",
     "SkeletonClip": "tempose.clips",
@@ -49,13 +57,17 @@ _PACKAGES = (
     "clips",
     "curves",
     "datasets",
+    "detail",
+    "embedding",
     "formats",
     "geometry",
     "kinematics",
     "linalg",
     "metrics",
     "models",
+    "regression",
     "render",
+    "rigging",
     "rotations",
     "samples",
     "shape_spaces",
@@ -64,10 +76,12 @@ _PACKAGES = (
 )
 
 __all__ = [
+    "DetailModel",
     "MarkerClip",
     "Mesh",
     "MeshClip",
     "MotionTransfer",
+    "Rig",
     "SignalModel",
     "Skeleton",
     "SkeletonClip",
@@ -76,6 +90,8 @@ __all__ = [
     "clips",
     "curves",
     "datasets",
+    "detail",
+    "embedding",
     "formats",
     "geometry",
     "kinematics",
@@ -83,7 +99,9 @@ __all__ = [
     "load",
     "metrics",
     "models",
+    "regression",
     "render",
+    "rigging",
     "rotations",
     "samples",
     "save",

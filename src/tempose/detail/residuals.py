@@ -2,17 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 from tempose.clips import SkeletonClip
-from tempose.kinematics import forward_kinematics, rest_transforms
+from tempose.detail.posing.skin import Basis, BlockSkin
 from tempose.rigging import Rig
-from tempose.rotations import conjugate, multiply, to_matrix
-from tempose.typing import FloatArray
+from tempose.rotations import to_matrix
+from tempose.typing import FloatArray, Progress, silent
 
-Basis = Literal["blended", "root", "world"]
+__all__ = ["BASES", "Basis", "residuals", "vertex_bases"]
+
+BASES: tuple[Basis, ...] = ("blended", "root", "world")
+"""The better ones first, by measurement."""
+
+
+def check_basis(basis: str) -> Basis:
+    """Check the name of a basis.
+
+    Parameters
+    ----------
+    basis : str
+        What the caller gave.
+
+    Returns
+    -------
+    str
+        The same.
+
+    Raises
+    ------
+    ValueError
+        If there is none of that name.
+    """
+    for known in BASES:
+        if basis == known:
+            return known
+    raise ValueError(f"basis must be one of {', '.join(BASES)}, got {basis!r}")
 
 
 def vertex_bases(rig: Rig, motion: SkeletonClip, basis: Basis = "blended") -> FloatArray:
@@ -32,21 +57,22 @@ def vertex_bases(rig: Rig, motion: SkeletonClip, basis: Basis = "blended") -> Fl
     (T, n, 3, 3) ndarray
         Rotations.
     """
-    T, n = motion.n_frames, len(rig.skin.mesh.vertices)
-    if basis == "world":
-        return np.broadcast_to(np.eye(3), (T, n, 3, 3))
-    world, _ = forward_kinematics(motion.skeleton, motion.rotations, motion.root_position)
-    turn = multiply(world, conjugate(rest_transforms(rig.skin.skeleton)[0]))
-    if basis == "root":
-        return np.broadcast_to(to_matrix(turn[:, :1]), (T, n, 3, 3))
-    q = np.zeros((T, n, 4))
-    reference = turn[:, :1]
-    signs = np.where((turn * reference).sum(axis=-1, keepdims=True) < 0, -1.0, 1.0)
-    q = np.einsum("nj,tjk->tnk", rig.skin.weights, signs * turn)
-    return to_matrix(q / np.linalg.norm(q, axis=-1, keepdims=True))
+    skin = BlockSkin(rig, check_basis(basis), np.float64)
+    quaternions: list[FloatArray] = []
+    for row, turn in zip(*skin.rows(motion)):
+        skin.pose(row, turn)
+        quaternions.append(skin.layout.flat(skin.Q))
+    return to_matrix(np.array(quaternions).reshape(motion.n_frames, -1, 4))
 
 
-def residuals(rig: Rig, motion: SkeletonClip, V: FloatArray, basis: Basis = "blended") -> FloatArray:
+def residuals(
+    rig: Rig,
+    motion: SkeletonClip,
+    V: FloatArray,
+    basis: Basis = "blended",
+    dtype: type = np.float64,
+    progress: Progress = silent,
+) -> FloatArray:
     """Residuals of frames against the posed skin.
 
     Parameters
@@ -56,14 +82,34 @@ def residuals(rig: Rig, motion: SkeletonClip, V: FloatArray, basis: Basis = "ble
     motion : SkeletonClip
         T frames.
     V : (T, n, 3) float
-        True frames, metres.
+        True frames, metres; an array or a memory map.
     basis : {"blended", "root", "world"}
-        In which they are given.
+        In which they are given. In the world, as the paper has it, a body that turns leaves residuals that no
+        pose explains.
+    dtype : type, default float64
+        Of the result.
+    progress : Progress
+        Told about the frames.
 
     Returns
     -------
     (T, n, 3) ndarray
         Metres.
+
+    Raises
+    ------
+    ValueError
+        If the frames do not fit the rig or the motion.
     """
-    world = np.asarray(V, dtype=np.float64) - rig.vertices(motion)
-    return np.einsum("tnba,tnb->tna", vertex_bases(rig, motion, basis), world)
+    n, T = len(rig.skin.mesh.vertices), motion.n_frames
+    if V.shape != (T, n, 3):
+        raise ValueError(
+            f"V must have shape ({T}, {n}, 3), a frame of the mesh for each of the motion, got {V.shape}"
+        )
+    skin = BlockSkin(rig, check_basis(basis), np.float64)
+    D = np.zeros((T, n, 3), dtype)
+    for t, (row, turn) in enumerate(zip(*skin.rows(motion))):
+        skin.pose(row, turn)
+        skin.residual(np.asarray(V[t]), motion.root_position[t], D[t])
+        progress(t + 1, T, "residuals")
+    return D

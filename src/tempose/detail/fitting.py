@@ -1,0 +1,207 @@
+"""From clips and a rig to what is learned: motions, residuals, inner products, modes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tempose.clips import MeshClip, SkeletonClip
+from tempose.detail.basis import DetailBasis, compress
+from tempose.detail.inputs import joined_inputs, motion_inputs
+from tempose.detail.multiresolution import ControlMesh, make_control
+from tempose.detail.regions import region_grams, region_shares
+from tempose.detail.residuals import Basis, residuals
+from tempose.detail.saving.lean import lean_motion, lean_rig
+from tempose.detail.training import Inputs, Training
+from tempose.rigging import Rig
+from tempose.rigging.pose_fit import fit_poses
+from tempose.typing import FloatArray, Progress
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """What learners and reports need of the clips."""
+
+    rig: Rig
+    """Lean, with the motion of the first clip."""
+    motions: tuple[SkeletonClip, ...]
+    """One for each clip."""
+    shares: FloatArray
+    """(n, R) of all vertices."""
+    residuals: FloatArray
+    """(T, k, 3) float32 of all clips one after another, of the k vertices that are learned from."""
+    learned_shares: FloatArray
+    """(k, R) of those vertices."""
+    training: Training
+    """T frames."""
+    detail: DetailBasis
+    """Modes at all vertices."""
+    seconds: dict[str, float] = field(default_factory=dict[str, float])
+    """Of every stage."""
+
+
+def gather(
+    clips: Sequence[MeshClip],
+    rig: Rig,
+    motions: Sequence[SkeletonClip] | None,
+    basis: Basis,
+    tolerance: float,
+    resolution: float | None,
+    progress: Progress,
+) -> Gathered:
+    """Prepare clips for learning.
+
+    Parameters
+    ----------
+    clips : sequence of MeshClip
+        All of the mesh of the rig.
+    rig : Rig
+        Skin and skeleton.
+    motions : sequence of SkeletonClip, optional
+        Of every clip; fitted where left out.
+    basis : {"blended", "root", "world"}
+        In which residuals are kept.
+    tolerance : float
+        What the modes may lose, rms in percent of the diagonal.
+    resolution : float, optional
+        Percentage of vertices that are learned from; all where left out.
+    progress : Progress
+        Told about every stage.
+
+    Returns
+    -------
+    Gathered
+        All that follows from the clips.
+    """
+    seconds: dict[str, float] = {}
+    clock = _Clock(seconds)
+    lean = lean_rig(rig)
+    fitted = tuple(_motions(lean, clips, motions, progress))
+    lean = replace(lean, motion=fitted[0])
+    clock("poses")
+    shares = region_shares(lean.skin.weights)
+    control = _control(lean, clips[0], resolution)
+    D, learned = _residuals(lean, clips, fitted, basis, control, progress)
+    clock("residuals")
+    grams, sizes = region_grams(D, learned)
+    training = Training(training_inputs(fitted), grams, sizes)
+    clock("inner products")
+    detail = compress(D, training.centred().sum(axis=0), tolerance / 100 * lean.skin.mesh.diagonal)
+    if control is not None:
+        detail = _raised(detail, control)
+    clock("modes")
+    return Gathered(lean, fitted, shares, D, learned, training, detail, seconds)
+
+
+def training_inputs(motions: Sequence[SkeletonClip]) -> Inputs:
+    """Read the motions that are learned from, velocities at the rate of the first.
+
+    Parameters
+    ----------
+    motions : sequence of SkeletonClip
+        At least one.
+
+    Returns
+    -------
+    Inputs
+        A chain for each motion.
+    """
+    first = motion_inputs(motions[0])
+    near = first.angles.mean(axis=0)
+    others = [motion_inputs(m, motions[0].fps, near, i + 1) for i, m in enumerate(motions[1:])]
+    return joined_inputs([first, *others])
+
+
+def _motions(
+    rig: Rig, clips: Sequence[MeshClip], motions: Sequence[SkeletonClip] | None, progress: Progress
+) -> list[SkeletonClip]:
+    if motions is not None:
+        return [lean_motion(motion) for motion in motions]
+    found: list[SkeletonClip] = []
+    for clip in clips:
+        fit = fit_poses(rig.skin, clip.vertices, fps=clip.fps, blending=rig.blending, progress=progress)
+        found.append(lean_motion(fit.motion))
+    return found
+
+
+def _control(rig: Rig, clip: MeshClip, resolution: float | None) -> ControlMesh | None:
+    if resolution is None or resolution >= 100:
+        return None
+    return make_control(rig.skin, np.asarray(clip.vertices[0], dtype=np.float64), resolution)
+
+
+def _residuals(
+    rig: Rig,
+    clips: Sequence[MeshClip],
+    motions: Sequence[SkeletonClip],
+    basis: Basis,
+    control: ControlMesh | None,
+    progress: Progress,
+) -> tuple[FloatArray, FloatArray]:
+    if control is not None:
+        clips, rig = [control.clip(clip) for clip in clips], control.rig(rig)
+    parts = [
+        residuals(rig, motion, clip.vertices, basis, np.float32, progress)
+        for clip, motion in zip(clips, motions)
+    ]
+    return np.concatenate(parts), region_shares(rig.skin.weights)
+
+
+def _raised(detail: DetailBasis, control: ControlMesh) -> DetailBasis:
+    """Modes of the control mesh at all vertices, in the same steps."""
+    modes = control.raise_values(detail.modes.astype(np.float64))
+    whole = np.clip(np.rint(modes), -32767, 32767).astype(np.int16)
+    return DetailBasis(whole, detail.step, detail.coordinates)
+
+
+class _Clock:
+    def __init__(self, seconds: dict[str, float]) -> None:
+        self._seconds, self._last = seconds, time.perf_counter()
+
+    def __call__(self, stage: str) -> None:
+        now = time.perf_counter()
+        self._seconds[stage] = now - self._last
+        self._last = now
+
+
+def rig_inputs(rig: Rig, motion: SkeletonClip, fps: float, near: FloatArray) -> Inputs:
+    """Read a motion that is to be posed.
+
+    Parameters
+    ----------
+    rig : Rig
+        Whose joints it must move.
+    motion : SkeletonClip
+        T frames.
+    fps : float
+        Rate of the training.
+    near : (K, 3) float
+        Mean rotation vectors of the training.
+
+    Returns
+    -------
+    Inputs
+        T frames.
+
+    Raises
+    ------
+    ValueError
+        If it moves other joints or has no frames.
+    """
+    names: Any = rig.skin.skeleton.names
+    if motion.skeleton.names != names:
+        odd = [name for name in motion.skeleton.names if name not in names]
+        what = (
+            f"unknown {odd[0]!r}" if odd else f"{len(motion.skeleton.names)} of {len(names)} in their order"
+        )
+        raise ValueError(
+            f"motion must move the joints of the rig, {', '.join(names[:3])}..., got {what}; "
+            "tempose.rigging.motions.match_motion brings other skeletons onto them"
+        )
+    if motion.n_frames == 0:
+        raise ValueError("motion must have one frame or more, got none")
+    return motion_inputs(motion, fps, near)

@@ -1,0 +1,93 @@
+"""What a person should know before trusting a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tempose.clips import MeshClip
+from tempose.detail.fitting import Gathered
+from tempose.detail.report.heldout import FEWEST, HeldOut
+from tempose.detail.residuals import Basis
+from tempose.rotations import angle_between
+
+_TURNS = 30.0
+"""Degrees of the root beyond which residuals in world axes do not last."""
+_STILL = 1e-6
+"""Part of the diagonal that frames may differ by and still be one."""
+
+
+def warnings_of(clips: Sequence[MeshClip], gathered: Gathered, chosen: HeldOut, basis: Basis) -> list[str]:
+    """Look for what makes learned detail doubtful.
+
+    Parameters
+    ----------
+    clips : sequence of MeshClip
+        The true frames.
+    gathered : Gathered
+        What was learned from.
+    chosen : HeldOut
+        The learner and the table.
+    basis : {"blended", "root", "world"}
+        Of the residuals.
+
+    Returns
+    -------
+    list of str
+        A sentence each.
+    """
+    found: list[str] = []
+    T = len(gathered.training.inputs)
+    if T < FEWEST:
+        found.append(
+            f"only {T} frames: too few to leave any out and test what was learned; "
+            f"the {chosen.learner.name} is used"
+        )
+    still = _still(clips, gathered.rig.skin.mesh.diagonal)
+    if still:
+        found.append(f"{still}: no motion, nothing to learn from but a constant residual")
+    turn = _root_turn(gathered)
+    if basis == "world" and turn > _TURNS:
+        found.append(
+            f"residuals are kept in world axes, and the root turns by {turn:.0f} degrees: the pose does "
+            'not say which way the body faces; take basis="blended"'
+        )
+    unbound = int((gathered.rig.skin.weights.sum(axis=1) == 0).sum())
+    if unbound:
+        found.append(f"{unbound} vertices are bound to no joint: they stay where they are and get no detail")
+    found += _doubts(chosen)
+    return found
+
+
+def _still(clips: Sequence[MeshClip], D: float) -> str:
+    """Name what does not move."""
+    constant = [
+        i
+        for i, clip in enumerate(clips)
+        if all(np.abs(f - clip.vertices[0]).max() <= _STILL * D for f in clip.vertices)
+    ]
+    if len(constant) == len(clips):
+        return "all frames are the same"
+    return f"clip {constant[0]} is the same in all frames" if constant else ""
+
+
+def _root_turn(gathered: Gathered) -> float:
+    """Degrees between the rotation of the root and that of the first frame, at most."""
+    first = gathered.motions[0].rotations[:1, 0]
+    return max(float(np.degrees(angle_between(m.rotations[:, 0], first).max())) for m in gathered.motions)
+
+
+def _doubts(chosen: HeldOut) -> list[str]:
+    """Say where parts left out were predicted no better than without learning."""
+    row, skin = chosen.rows.get(chosen.learner.name), chosen.rows.get("skin")
+    if row is None or skin is None:
+        return []
+    if row["rms"] >= skin["rms"]:
+        return [
+            f"on parts left out {chosen.learner.name} has {row['part']:.2f} of the skin's own error: "
+            "new motion is better posed with strength 0"
+        ]
+    if chosen.learner.name == "mean":
+        return ["no learner predicted parts left out better than their mean: detail is a constant"]
+    return []

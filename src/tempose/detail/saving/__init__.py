@@ -1,0 +1,1 @@
+"""Models of detail as small files."""
