@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from tempose.detail.learners.constant import MeanLearner
 from tempose.detail.learners.gp import PlainGaussianProcess
+from tempose.detail.learners.latent import LatentLearner
 from tempose.detail.learners.nearest import NearestLearner
 from tempose.detail.learners.regional import RegionalGaussianProcess
 from tempose.detail.learners.ridge import RidgeLearner
@@ -15,6 +16,7 @@ from tempose.detail.training import Learner
 __all__ = [
     "DEFAULT",
     "LEARNERS",
+    "LatentLearner",
     "MeanLearner",
     "NearestLearner",
     "PlainGaussianProcess",
@@ -32,6 +34,8 @@ LEARNERS: Mapping[str, Callable[[], Learner]] = MappingProxyType(
         "ridge": RidgeLearner,
         "gp": PlainGaussianProcess,
         "regional-gp": RegionalGaussianProcess,
+        "gplvm": LatentLearner,
+        "gplvm-paper": LatentLearner.paper,
     }
 )
 """Makers of the learners with their default settings."""
