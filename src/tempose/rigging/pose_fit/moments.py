@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +66,23 @@ class SkinMoments:
         sparse = np.count_nonzero(weights) < _DENSE * weights.size
         self.lifted = sp.csr_array(lifted.T) if sparse else np.ascontiguousarray(lifted.T)
         """(4 J, bound) rows ``l``, sparse where most weights are zero."""
+
+    def bound_to(self, skin: SkinnedMesh) -> SkinMoments:
+        """Take these moments for a skin that differs only in where its joints are.
+
+        Parameters
+        ----------
+        skin : SkinnedMesh
+            The same mesh and weights.
+
+        Returns
+        -------
+        SkinMoments
+            Moments of `skin`, nothing computed again.
+        """
+        other = copy(self)
+        other.skin = skin
+        return other
 
     def frames(self, V: FloatArray, name: str = "frames") -> FrameMoments:
         """Take the moments of frames.
