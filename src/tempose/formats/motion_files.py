@@ -10,6 +10,7 @@ from tempose.formats._place import metres_per_unit
 from tempose.formats._table import (
     FORMATS,
     GLTF_SUFFIXES,
+    USD_SUFFIXES,
     PathLike,
     Unit,
     check_arguments,
@@ -32,7 +33,7 @@ def load_skeleton_clip(
     Parameters
     ----------
     path : path-like
-        A BVH, AMC, GLB or glTF file.
+        A BVH, AMC, GLB, glTF or USD file.
     up, unit, fps, clip
         As for `load`.
     skeleton : path-like, optional
@@ -59,6 +60,8 @@ def load_skeleton_clip(
     if suffix in GLTF_SUFFIXES:
         reader = import_module("tempose.formats.glb").read_skeleton_clip
         return reader(place, clip, fps, up=up, unit=metres)
+    if suffix in USD_SUFFIXES:
+        return import_module("tempose.formats.usd").read_skeleton_clip(place, fps, up=up, unit=metres)
     raise FormatError(f"{place}: expected a skeleton's motion ({_known('skeleton')}), found a {suffix} file")
 
 
@@ -76,15 +79,15 @@ def load_skin(
     Parameters
     ----------
     path : path-like
-        A GLB or glTF file with a skin, or MakeHuman weights (``.mhw``).
+        A GLB, glTF or USD file with a skin, or MakeHuman weights (``.mhw``).
     mesh : Mesh, optional
-        The mesh that MakeHuman weights are for; not used for glTF.
+        The mesh that MakeHuman weights are for; used for nothing else.
     base : Mesh, optional
         The whole MakeHuman mesh, where `mesh` is a part of it that does not come from a file.
     skeleton : path-like, optional
         The ``.mhskel`` that belongs to MakeHuman weights, where it is not found by itself.
     up, unit
-        As for `load`; glTF only.
+        As for `load`; not for MakeHuman weights.
 
     Returns
     -------
@@ -103,6 +106,8 @@ def load_skin(
     suffix = known_suffix(place)
     if suffix in GLTF_SUFFIXES:
         return import_module("tempose.formats.glb").read_skin(place, up=up, unit=metres_per_unit(unit))
+    if suffix in USD_SUFFIXES:
+        return import_module("tempose.formats.usd").read_skin(place, up=up, unit=metres_per_unit(unit))
     if suffix == ".mhw":
         if mesh is None:
             raise ValueError(f"{place} holds skin weights only: give the mesh they are for as mesh=...")

@@ -11,7 +11,15 @@ from tempose.clips.mesh_parts import keep_clip_group, keep_group
 from tempose.formats._frames import SEQUENCE_SUFFIXES, find_frames
 from tempose.formats._place import metres_per_unit
 from tempose.formats._sequence import read_sequence, read_still
-from tempose.formats._table import FORMATS, GLTF_SUFFIXES, PathLike, Unit, check_arguments, known_suffix
+from tempose.formats._table import (
+    FORMATS,
+    GLTF_SUFFIXES,
+    USD_SUFFIXES,
+    PathLike,
+    Unit,
+    check_arguments,
+    known_suffix,
+)
 from tempose.formats.conventions import FormatError
 from tempose.formats.motion_files import load_skeleton_clip, load_skin
 from tempose.formats.saving import save
@@ -76,6 +84,8 @@ def load(
         return _grouped(_read_array(place, suffix, up, unit, fps, topology), group, place)
     if suffix in GLTF_SUFFIXES:
         return _grouped(_load_glb(place, up, unit, fps, clip), group, place)
+    if suffix in USD_SUFFIXES:
+        return _grouped(_load_usd(place, up, unit, fps), group, place)
     if suffix in (".bvh", ".amc"):
         return load_skeleton_clip(place, up=up, unit=unit, fps=fps)
     raise FormatError(f"{place}: holds skin weights, which need a mesh; use load_skin(path, mesh=...)")
@@ -206,6 +216,19 @@ def _load_glb(
     except FormatError as error:
         try:
             return glb.read_skeleton_clip(place, clip, fps, up=up, unit=metres)
+        except FormatError:
+            raise error from None
+    return moving if moving.n_frames > 1 else moving.mesh.with_vertices(moving.vertices[0])
+
+
+def _load_usd(place: str, up: str | None, unit: Unit, fps: float | None) -> Mesh | MeshClip | SkeletonClip:
+    """Read the mesh if there is one, moving if it moves; else the motion of the joints."""
+    usd, metres = import_module("tempose.formats.usd"), metres_per_unit(unit)
+    try:
+        moving = usd.read_clip(place, fps, up=up, unit=metres)
+    except FormatError as error:
+        try:
+            return usd.read_skeleton_clip(place, fps, up=up, unit=metres)
         except FormatError:
             raise error from None
     return moving if moving.n_frames > 1 else moving.mesh.with_vertices(moving.vertices[0])

@@ -10,7 +10,7 @@ from tempose.clips import Mesh, MeshClip, SkeletonClip
 from tempose.formats._frames import SEQUENCE_SUFFIXES, split_counter
 from tempose.formats._place import metres_per_unit
 from tempose.formats._sequence_write import write_sequence, write_still
-from tempose.formats._table import FORMATS, PathLike, Unit, check_arguments
+from tempose.formats._table import FORMATS, USD_SUFFIXES, PathLike, Unit, check_arguments
 from tempose.formats.conventions import FormatError
 from tempose.typing import Progress, silent
 
@@ -63,6 +63,9 @@ def save(
     is_pattern = split_counter(Path(place).name) is not None and suffix in SEQUENCE_SUFFIXES
     if isinstance(thing, MeshClip) and (suffix == "" or is_pattern):
         return write_sequence(place, thing, up, metres, progress)
+    if suffix in USD_SUFFIXES:
+        writer = import_module("tempose.formats.usd_write").write
+        return writer(place, thing, up=up, unit=metres, progress=progress)
     if suffix in (".npz", ".npy"):
         return import_module("tempose.formats.npz").write(place, thing, up, metres)
     if suffix in SEQUENCE_SUFFIXES:
