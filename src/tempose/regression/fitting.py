@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
+from tempose.regression.group_distances import GroupDistances
 from tempose.regression.kernel import Kernel
 from tempose.regression.likelihood import GramLikelihood
 from tempose.regression.threads import one_blas_thread
@@ -33,7 +34,7 @@ class KernelFit:
 
 
 def fit_kernel(
-    X: FloatArray,
+    X: FloatArray | GroupDistances,
     groups: IntArray,
     S: FloatArray,
     *,
@@ -46,8 +47,8 @@ def fit_kernel(
 
     Parameters
     ----------
-    X : (T, P) float
-        Inputs.
+    X : (T, P) float, or GroupDistances
+        Inputs; their distances where many kernels are fitted to the same inputs.
     groups : (P,) int
         Group of every column; the columns of a group share a length scale.
     S : (T, T) float
@@ -67,8 +68,9 @@ def fit_kernel(
     KernelFit
         The most likely of the kernels found.
     """
-    likelihood = GramLikelihood(X, groups, S)
-    chosen = default_starts(X, groups) if starts is None else list(starts)
+    inputs = X if isinstance(X, GroupDistances) else GroupDistances(X, groups)
+    likelihood = GramLikelihood(inputs, S)
+    chosen = default_starts(inputs.X, groups) if starts is None else list(starts)
     with one_blas_thread():
         fits = [_descend(likelihood, start, prior, iterations, noise_floor) for start in chosen]
     return min(fits, key=lambda fit: fit.value)
@@ -118,5 +120,5 @@ def _descend(
     found = minimize(
         objective, first, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": iterations}
     )
-    kernel = Kernel.from_logarithms(found.x, likelihood.groups)
+    kernel = Kernel.from_logarithms(found.x, likelihood.inputs.groups)
     return KernelFit(kernel, float(found.fun), int(found.nit), bool(found.success))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from tempose.regression.group_distances import GroupDistances
 from tempose.regression.kernel import Kernel
-from tempose.typing import FloatArray, IntArray
+from tempose.typing import FloatArray
 
 _FACTORISE, _INVERT = get_lapack_funcs(("potrf", "potri"), dtype=np.float64)
 
@@ -15,14 +16,12 @@ class GramLikelihood:
     """Evidence for kernels from T observations, of however many outputs.
 
     Outputs enter through ``S = Y Y^T / (number of outputs)`` only, so that a step costs the same for one
-    output as for a hundred thousand; squared distances of the inputs are made once, a row a group.
+    output as for a hundred thousand.
 
     Parameters
     ----------
-    X : (T, P) float
-        Inputs.
-    groups : (P,) int
-        Group of every column, 0 to G - 1.
+    inputs : GroupDistances
+        Of T inputs in G groups.
     S : (T, T) float
         Mean over the outputs of their outer products.
 
@@ -38,21 +37,10 @@ class GramLikelihood:
        NIPS 2003.
     """
 
-    def __init__(self, X: FloatArray, groups: IntArray, S: FloatArray) -> None:
-        X = np.asarray(X, dtype=np.float64)
-        self.groups: IntArray = np.asarray(groups)
+    def __init__(self, inputs: GroupDistances, S: FloatArray) -> None:
+        self.inputs = inputs
         self._S: FloatArray = np.asarray(S, dtype=np.float64)
-        T, G = len(X), int(self.groups.max(initial=-1)) + 1
-        self._pairs = np.tril_indices(T, -1)
-        self._squares: FloatArray = np.zeros((G, T))
-        self._distances: FloatArray = np.zeros((G, len(self._pairs[0])))
-        for g in range(G):
-            part = X[:, self.groups == g]
-            part = part - part.mean(axis=0)  # for the digits of the differences
-            products, squares = part @ part.T, np.square(part).sum(axis=1)
-            apart = squares[:, None] + squares - 2 * products
-            self._distances[g] = np.maximum(apart[self._pairs], 0.0)
-            self._squares[g] = np.square(X[:, self.groups == g]).sum(axis=1)
+        self._pairs = inputs.pairs
 
     def __call__(self, logarithms: FloatArray) -> tuple[float, FloatArray]:
         """Judge a kernel.
@@ -70,14 +58,14 @@ class GramLikelihood:
         gradient : (3 + G,) ndarray
             Its derivative by the logarithms.
         """
-        kernel = Kernel.from_logarithms(logarithms, self.groups)
-        rows, columns = self._pairs
-        squares = kernel.precision @ self._squares
-        apart = kernel.precision @ self._distances
+        kernel = Kernel.from_logarithms(logarithms, self.inputs.groups)
+        rows, columns = self.inputs.rows, self.inputs.columns
+        squares = kernel.precision @ self.inputs.squares
+        apart = kernel.precision @ self.inputs.distances
         smooth = kernel.smooth * np.exp(-0.5 * apart)
         linear = 0.5 * kernel.linear * (squares[rows] + squares[columns] - apart)
         K = np.diag(kernel.smooth + kernel.linear * squares + kernel.noise)
-        K[rows, columns] = smooth + linear
+        K.ravel()[self._pairs] = smooth + linear
         inverse, log_determinant = _inverse(K)
         if inverse is None:
             return np.inf, np.zeros(len(logarithms))
@@ -88,10 +76,10 @@ class GramLikelihood:
 
     def _gradient(self, kernel: Kernel, slope: FloatArray, smooth: FloatArray) -> FloatArray:
         """Derive by the logarithms, from the derivative by K; a pair stands for two entries."""
-        diagonal, pairs = np.diagonal(slope), 2 * slope[self._pairs]
+        diagonal, pairs = np.diagonal(slope), 2 * slope.ravel()[self._pairs]
         by_smooth = pairs * smooth
-        near, far = (self._distances @ np.column_stack([by_smooth, pairs])).T
-        products = self._squares @ slope.sum(axis=0) - 0.5 * far
+        near, far = (self.inputs.distances @ np.column_stack([by_smooth, pairs])).T
+        products = self.inputs.squares @ slope.sum(axis=0) - 0.5 * far
         by_precision = kernel.linear * products - 0.5 * near
         by_linear = kernel.linear * float(kernel.precision @ products)
         trace = float(diagonal.sum())

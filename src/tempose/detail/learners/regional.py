@@ -10,7 +10,7 @@ from tempose.detail.learners.calibration import variance_factor
 from tempose.detail.learners.features import Features
 from tempose.detail.learners.kernel_predictor import KernelPredictor, spread_frames, unit_grams
 from tempose.detail.training import Training
-from tempose.regression import Kernel, fit_kernel, one_blas_thread
+from tempose.regression import GroupDistances, Kernel, fit_kernel, one_blas_thread
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 
@@ -62,10 +62,10 @@ class RegionalGaussianProcess:
         whole = np.einsum("r,rij->ij", spreads * training.sizes, S)
         with one_blas_thread():
             start = _whole_body(seen, groups, blocks, whole * len(some) / np.trace(whole))
-            factors = np.ones(len(grams))
+            factors, distances = np.ones(len(grams)), GroupDistances(seen, groups)
             for r in np.flatnonzero(spreads):
                 fit = fit_kernel(
-                    seen, groups, S[r], starts=[start], prior=self.prior, iterations=self.iterations
+                    distances, groups, S[r], starts=[start], prior=self.prior, iterations=self.iterations
                 )
                 kernels[r] = fit.kernel
                 factors[r] = variance_factor(fit.kernel, seen, S[r], inputs.chains[some])
