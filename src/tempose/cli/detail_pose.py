@@ -56,8 +56,6 @@ def pose(  # numpydoc ignore=PR01
     tolerance: Tolerance = None,
 ) -> None:
     """Pose a model by a motion of its skeleton: edited in another package, or of another clip."""
-    from tempose.rigging.motions import read_mapping
-
     began = time.perf_counter()
     options = merged_options(locals(), "model_file", "motion_file", "out", "report", "began")
     check_out(out)
@@ -69,7 +67,7 @@ def pose(  # numpydoc ignore=PR01
         raise ValueError(f"--damp must be a positive number of seconds, got {damp}")
     strengths = parse_strength(strength)
     factors = None if proportions is None else read_table(proportions)
-    names = None if mapping is None else read_mapping(mapping)
+    names = _names(mapping)
     model = load_detail(model_file)
     settings: dict[str, Any] = {"strength": strengths, "damp": damp, "mask": read_mask(mask)}
     reading = {"up": from_up, "unit": from_unit, "fps": from_fps, "clip": clip}
@@ -87,6 +85,12 @@ def pose(  # numpydoc ignore=PR01
         inputs = {"model": str(model_file), "motion": motion_file, "out": str(out)}
         write_report(report, make_report("detail pose", inputs, options, {"warnings": warnings}, began))
     note(f"wrote {out}: {posed.n_frames} frames at {posed.fps:.6g} fps, {len(posed.rest)} vertices")
+
+
+def _names(path: Path | None) -> dict[str, str] | None:
+    from tempose.rigging.motions import read_mapping
+
+    return None if path is None else read_mapping(path)
 
 
 def _load_motion(

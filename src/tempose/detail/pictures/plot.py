@@ -23,7 +23,15 @@ from tempose.typing import FloatArray, IntArray, Progress, silent
 if TYPE_CHECKING:
     from tempose.detail.model import DetailModel
 
-_WORDS = {"skin": "skin alone", "mean": "mean residual", "ours": "with detail", "gp": "plain GP"}
+_WORDS = {
+    "skin": "skin alone",
+    "mean": "mean residual",
+    "ours": "with detail",
+    "gp": "plain GP",
+    "regional-gp": "GP a region",
+    "gplvm": "GP-LVM",
+    "gplvm-paper": "GP-LVM as in the paper",
+}
 _FOLDS = 5
 
 

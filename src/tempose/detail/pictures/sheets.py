@@ -44,11 +44,7 @@ def detail_sheet(
     (height, width, 3) ndarray of uint8
         sRGB picture.
     """
-    options: dict[str, Any] = {
-        "cell": 260,
-        "views": body_views(motion, ("front",), motion.n_frames // 2),
-        **look,
-    }
+    options = {**_look(motion), **look}
     return contact_sheet(
         [clip, skin, detailed], frames, names=["clip", "skin alone", "with detail"], **options
     )
@@ -84,11 +80,7 @@ def edit_sheet(
     (height, width, 3) ndarray of uint8
         sRGB picture.
     """
-    options: dict[str, Any] = {
-        "cell": 260,
-        "views": body_views(motion, ("front",), motion.n_frames // 2),
-        **look,
-    }
+    options = {**_look(motion), **look}
     clips, names = [before, after], ["before", "after"]
     lines, scalars = [bone_lines(motion), bone_lines(edited)], [None, None]
     if moved:
@@ -127,15 +119,15 @@ def variance_sheet(
         sRGB picture.
     """
     spread = 1000.0 * np.sqrt(np.maximum(variance, 0.0))
-    options: dict[str, Any] = {
-        "cell": 260,
-        "views": body_views(motion, ("front",), motion.n_frames // 2),
-        **look,
-    }
+    options = {**_look(motion), **look}
     label = "error expected of a coordinate, mm"
     return contact_sheet(
         [detailed], frames, names=["variance"], scalars=[spread], scalar_label=label, **options
     )
+
+
+def _look(motion: SkeletonClip) -> dict[str, Any]:
+    return {"cell": 260, "views": body_views(motion, ("front",), motion.n_frames // 2), "track": True}
 
 
 def skin_clip(rig: Rig, motion: SkeletonClip) -> MeshClip:

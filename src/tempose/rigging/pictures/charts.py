@@ -8,13 +8,13 @@ import numpy as np
 
 from tempose.render import Theme
 from tempose.render.chart_scale import value_range
-from tempose.render.drawing import Drawing
+from tempose.render.drawing import Drawing, Words
 from tempose.render.graph import Graph, legend
 from tempose.render.themes import theme_named
 from tempose.typing import FloatArray
 
-_SIZE = (760, 300)
-_BOX = (56.0, 54.0, 738.0, 254.0)
+_SIZE = (760, 330)
+_BOX = (56.0, 84.0, 738.0, 284.0)
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7, 4), (2, 4), (9, 3, 2, 3))
 
 
@@ -51,7 +51,8 @@ def draw_frame_errors(
     graph = Graph(Drawing(*_SIZE, tone.panel), tone, _BOX, (0.0, last), (0.0, max(top, 1e-12)))
     for x0, x1 in list(zip([0, *parts], [*parts, count]))[1::2]:
         graph.band(max(x0 - 0.5, 0.0), min(x1 - 0.5, last), tone.text_3, 0.08)
-    graph.axes(title, "frame", whole=True)
+    graph.axes("", "frame", whole=True)
+    graph.drawing.add(Words(title, (_BOX[0] - 34, 26), 12.5, tone.text))
     inks = dict(zip(reversed(curves), (tone.accent, tone.right, tone.left, tone.text_3)))
     dashes = dict(zip(reversed(curves), _DASHES))
     for name, y in curves.items():

@@ -166,6 +166,7 @@ def rig_sheet(
         names=["clip", "skin alone"],
         segments=[bone_lines(rig.motion), None],
         theme=theme,
+        track=True,
     )
 
 
