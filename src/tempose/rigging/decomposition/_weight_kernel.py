@@ -156,7 +156,7 @@ def choose_bones(
             for a in range(k):
                 g[j] += E[j, S[a]] * w[a]
         for _ in range(B):
-            j = np.argmin(g)
+            j = int(np.argmin(g))
             if g[j] >= energy * (1 - 1e-9):
                 break
             g[j] = np.inf

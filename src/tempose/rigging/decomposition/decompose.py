@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose._validate import as_floats, read_only
-from tempose.rigging.decomposition.growth import alternate, exchange, grow
+from tempose.rigging.decomposition.alternation import alternate
+from tempose.rigging.decomposition.growth import exchange, grow
 from tempose.rigging.decomposition.problem import Problem, State
 from tempose.rigging.decomposition.steps import weight_step
 from tempose.rotations import from_matrix, to_matrix
@@ -119,11 +120,7 @@ def decompose(
         raise ValueError("rest must span some space, got all vertices at one place")
     problem = Problem.of((rest - centre) / scale, (frames - centres[:, None]) / scale)
     state = _search(problem, B, K, np.random.default_rng(seed), progress)
-    done, converged = 0, False
-    while done < iterations and not converged:
-        more, converged = alternate(problem, state, 1, tolerance)
-        done += more
-        progress(done, iterations, "bones and weights")
+    done, converged = alternate(problem, state, iterations, tolerance, progress)
     _refuse_empty(state, B)
     R = state.motions[..., :3]
     shift = scale * state.motions[..., 3] + centres[:, None] - R @ centre
@@ -173,4 +170,4 @@ def _refuse_empty(state: State, B: int) -> None:
 
 
 def _too_many(B: int, enough: int) -> str:
-    return f"bones={B} is more than the clip has: {enough} rigid bones explain it already; ask for bones={enough}"
+    return f"bones={B} is more than the clip has: {enough} rigid bones explain it; ask for bones={enough}"

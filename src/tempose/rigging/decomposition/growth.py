@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from tempose.rigging.decomposition.alternation import alternate
 from tempose.rigging.decomposition.problem import Problem, State
 from tempose.rigging.decomposition.seeds import best_seed, rigid_motions
-from tempose.rigging.decomposition.steps import bone_step, weight_step
-from tempose.typing import FloatArray
+from tempose.rigging.decomposition.steps import weight_step
+from tempose.typing import FloatArray, IntArray
 
 
 def first_state(problem: Problem, influences: int) -> State:
@@ -71,38 +72,6 @@ def without_bone(state: State, bone: int) -> State:
     weights = np.divide(weights, total, out=np.zeros_like(weights), where=total > 0)
     bones = np.where(state.bones > bone, state.bones - 1, state.bones)
     return State(np.delete(state.motions, bone, axis=1), bones, weights, state.left.copy())
-
-
-def alternate(problem: Problem, state: State, most: int, tolerance: float = 0.0) -> tuple[int, bool]:
-    """Bones and weights in turn; `state` is edited.
-
-    Parameters
-    ----------
-    problem : Problem
-        The clip.
-    state : State
-        Where to start.
-    most : int
-        Largest number of rounds.
-    tolerance : float, default 0.0
-        A round that lowers the root mean square distance by a smaller part than this is the last.
-
-    Returns
-    -------
-    rounds : int
-        How many were made.
-    converged : bool
-        Whether the tolerance was met.
-    """
-    before = float(state.left.sum())
-    for k in range(most):
-        bone_step(problem, state)
-        weight_step(problem, state)
-        now = float(state.left.sum())
-        if now >= before * (1 - tolerance) ** 2:
-            return k + 1, True
-        before = now
-    return most, False
 
 
 def grow(
@@ -185,7 +154,7 @@ def exchange(problem: Problem, state: State, rng: np.random.Generator, trials: i
     return state
 
 
-def _missed_least(problem: Problem, state: State) -> FloatArray:
+def _missed_least(problem: Problem, state: State) -> IntArray:
     losses: list[float] = []
     for bone in range(state.n_bones):
         trial = without_bone(state, bone)

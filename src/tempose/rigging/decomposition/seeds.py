@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tempose.rigging.decomposition.problem import Problem, State
 from tempose.rigging.decomposition.steps import predicted
@@ -91,7 +91,7 @@ def best_seed(
     """
     n = len(problem.rest)
     drawn = rng.choice(n, size=min(count, n), replace=False, p=_chances(state.left))
-    tree = cKDTree(problem.rest)
+    tree = KDTree(problem.rest)
     found: list[FloatArray] = []
     for k, centres in ((min(size, n), drawn[::2]), (min(3 * size, n), drawn[1::2])):
         if len(centres):
