@@ -8,6 +8,7 @@ import numpy as np
 
 from tempose.clips import SkeletonClip, SkinnedMesh
 from tempose.kinematics import local_rotations, rest_transforms
+from tempose.rigging.pose_fit.dual_descent import descend_dual
 from tempose.rigging.pose_fit.moments import FrameMoments, SkinMoments, about_joints
 from tempose.rigging.pose_fit.starts import bone_sums
 from tempose.rigging.pose_fit.sweep import sweep_back, sweep_forward
@@ -38,7 +39,7 @@ def fit_poses(
     fps: float = 30.0,
     blending: str = "linear",
     steps: int = 30,
-    tolerance: float = 1e-7,
+    tolerance: float = 1e-6,
     progress: Progress = silent,
 ) -> PoseFit:
     """Fit the motion of a skeleton to frames.
@@ -55,7 +56,7 @@ def fit_poses(
         ``"linear"`` or ``"dual-quaternion"``.
     steps : int, default 30
         Largest number of Newton steps from one start.
-    tolerance : float, default 1e-7
+    tolerance : float, default 1e-6
         A frame is done when a step can lower its squared error by no more than this part.
     progress : Progress
         Told about every block of frames.
@@ -88,7 +89,8 @@ def fit_poses(
         raise ValueError(f"blending must be 'linear' or 'dual-quaternion', got {blending!r}")
     made = SkinMoments(skin)
     seen = made.frames(frames)
-    return fit_moments(made, seen, fps=fps, steps=steps, tolerance=tolerance, progress=progress)
+    dual = frames if blending == "dual-quaternion" else None
+    return _fit(made, seen, dual, fps, steps, tolerance, progress)
 
 
 def fit_moments(
@@ -97,7 +99,7 @@ def fit_moments(
     *,
     fps: float = 30.0,
     steps: int = 30,
-    tolerance: float = 1e-7,
+    tolerance: float = 1e-6,
     progress: Progress = silent,
 ) -> PoseFit:
     """Fit the motion of a skeleton to frames of which only the moments are left.
@@ -112,7 +114,7 @@ def fit_moments(
         Frames per second.
     steps : int, default 30
         Largest number of Newton steps from one start.
-    tolerance : float, default 1e-7
+    tolerance : float, default 1e-6
         A frame is done when a step can lower its squared error by no more than this part.
     progress : Progress
         Told about every block of frames.
@@ -122,6 +124,18 @@ def fit_moments(
     PoseFit
         Motion and how well it fits.
     """
+    return _fit(made, seen, None, fps, steps, tolerance, progress)
+
+
+def _fit(
+    made: SkinMoments,
+    seen: FrameMoments,
+    frames: FloatArray | None,
+    fps: float,
+    steps: int,
+    tolerance: float,
+    progress: Progress,
+) -> PoseFit:
     skeleton = made.skin.skeleton
     joints = rest_transforms(skeleton)[1] - made.centre
     parents = skeleton.parents.astype(np.int64)
@@ -131,13 +145,15 @@ def fit_moments(
     R, root, values = np.zeros((T, J, 3, 3)), np.zeros((T, 3)), np.zeros(T)
     iterations, converged = np.zeros(T, dtype=np.int64), np.zeros(T, dtype=np.bool_)
     known = (A, B, seen.energies)
-    found = (parents, bones, R, root, values, iterations, converged, steps, tolerance)
+    found = (R, root, values, iterations, converged, steps, tolerance)
     sums = bone_sums(A)
     for t in range(0, T, _AT_ONCE):
         stop = min(t + _AT_ONCE, T)
-        sweep_forward(t, stop, *known, sums, *found)
+        sweep_forward(t, stop, *known, sums, parents, bones, *found)
         progress(stop, T, "poses")
-    sweep_back(*known, *found)
+    sweep_back(*known, parents, bones, *found)
+    if frames is not None:
+        descend_dual(made, seen, frames, A, *found, progress)
     squares = np.maximum(values, 0.0) + seen.loose
     errors = np.sqrt(squares / len(made.skin.mesh.vertices))
     rotations = continuous_signs(local_rotations(skeleton, from_matrix(R)))
