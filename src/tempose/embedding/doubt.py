@@ -15,6 +15,9 @@ DOUBTFUL = 1.45
 _PITS_ALIKE = 0.025
 _CLEAR, _RATIO = 0.15, 1.45
 _TURNED = np.cos(np.radians(50.0))
+_SKIRT, _ELSE_HUMAN, _OPEN = 2.0, 0.75, 3.0
+"""What legs joined by a skirt cost, in standard deviations; how human the rest must be for that reading, and
+how far out the legs."""
 
 
 def whole_penalty(ends: Ends, limbs: Limbs) -> tuple[float, dict[str, float]]:
@@ -37,11 +40,37 @@ def whole_penalty(ends: Ends, limbs: Limbs) -> tuple[float, dict[str, float]]:
     terms = dict(ends.terms)
     terms["crotch"] = (limbs.legs[0].start / ends.size - _CROTCH) / _CROTCH_SPREAD
     terms["armpits"] = (limbs.pit / ends.size - _PIT) / _PIT_SPREAD
-    square = float(np.mean(np.square(list(terms.values()))))
+    counted = dict(terms)
+    if skirted(terms):
+        counted |= {"feet": -_SKIRT, "crotch": _SKIRT}
+    square = float(np.mean(np.square(list(counted.values()))))
     # of most bodies 0, so it may add but must not dilute
     terms["armpits alike"] = (limbs.arms[0].start - limbs.arms[1].start) / ends.size / _PITS_ALIKE
     square += terms["armpits alike"] ** 2 / len(terms)
     return float(np.sqrt(square)) / DOUBTFUL, terms
+
+
+def skirted(terms: dict[str, float]) -> bool:
+    """Tell whether a skirt or a long coat joins the legs of a body that is human otherwise.
+
+    Parameters
+    ----------
+    terms : dict of str to float
+        From `whole_penalty`.
+
+    Returns
+    -------
+    bool
+        Whether the legs part far too low and the feet are too near each other, while everything else is as
+        usual. Four-legged animals, too, part low, but are unlike a human elsewhere.
+    """
+    legs = ("feet", "crotch")
+    rest = [value for name, value in terms.items() if name not in legs]
+    return terms["feet"] < -_OPEN and terms["crotch"] > _OPEN and _rms(rest) < _ELSE_HUMAN
+
+
+def _rms(values: list[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def doubts(

@@ -11,7 +11,7 @@ import numpy as np
 from tempose.clips import Mesh, SkinnedMesh
 from tempose.embedding.attempts import Attempt, read_body
 from tempose.embedding.cells import Cells
-from tempose.embedding.doubt import doubts, upside
+from tempose.embedding.doubt import doubts, skirted, upside
 from tempose.embedding.embedding import Embedding
 from tempose.embedding.facing import axis_vector, body_frame, find_side, nearest_axis
 from tempose.embedding.fallback import average_body
@@ -149,7 +149,8 @@ def _placed(body: Attempt, wanted: FloatArray | None, report: dict[str, Any]) ->
     if ends is None or limbs is None or terms is None:
         return None
     arms = _pair([place_arm(cells, limbs.arms[i], ends.size, int(ends.cells[1 + i])) for i in range(2)])
-    legs = _pair([place_leg(cells, limb, ends.size, limbs.pit) for limb in limbs.legs])
+    skirt = skirted(terms)
+    legs = _pair([place_leg(cells, limb, ends.size, limbs.pit, skirted=skirt) for limb in limbs.legs])
     legs = centre_hips(legs, limbs.trunk)
     trunk = place_trunk(cells, limbs, ends, legs)
     arms, legs = refine_hinges(limbs, mirror_shoulders(arms, legs, trunk, ends.size), legs, ends.size)
@@ -165,6 +166,7 @@ def _placed(body: Attempt, wanted: FloatArray | None, report: dict[str, Any]) ->
     frame = body_frame(side, axis_vector(axis) if upright > _TILTED else spine)
     report |= {
         "penalties": terms,
+        "skirt": skirt,
         "facing_votes": votes,
         "tilt_degrees": float(np.degrees(np.arccos(min(upright, 1.0)))),
         "stature": ends.size / WAY_PER_STATURE,

@@ -8,9 +8,8 @@ from tempose.embedding.cells import Cells
 from tempose.embedding.human import NAMES
 from tempose.typing import FloatArray
 
-_DEEP, _THIN = 0.012, 0.004
-"""How deep below the surface a joint lies at least, and one of the toes, as shares of the way from the head
-to the feet."""
+_DEEP, _THIN = 0.012, {"hand": 0.006, "foot": 0.006, "toes": 0.004}
+"""How deep below the surface a joint lies at least, as shares of the way from the head to the feet."""
 
 
 def pull_inside(cells: Cells, joints: FloatArray, size: float) -> FloatArray:
@@ -32,7 +31,7 @@ def pull_inside(cells: Cells, joints: FloatArray, size: float) -> FloatArray:
         neighbourhood is deepest.
     """
     moved = np.array(joints)
-    least = size * np.array([_THIN if name.endswith("toes") else _DEEP for name in NAMES])
+    least = size * np.array([_THIN.get(name.split("_")[-1], _DEEP) for name in NAMES])
     for j in np.flatnonzero(cells.solid.depth_at(joints) < least):
         away = np.linalg.norm(cells.points - joints[j], axis=1)
         # in a body too slender for that, what is deep by its own measure will do

@@ -18,6 +18,7 @@ _ELBOW_SHARE, _ELBOW_TO_TIP = 0.325, 0.238
 _WRIST_SHARE = 0.70
 _HIP_ABOVE_CROTCH, _HIP_BELOW_PIT, _HIP = 0.045, 0.205, 0.458
 _HIP_WEIGHTS = (0.4, 0.5, 0.1)
+_HIP_WEIGHTS_SKIRTED = (0.0, 0.7, 0.3)
 _ANKLE_TO_TOE = 0.108
 _KNEE_SHARE, _KNEE_TO_ANKLE = 0.445, 0.22
 _NECK_ABOVE_PIT, _HEAD_ABOVE_NECK = 0.085, 0.06
@@ -92,7 +93,7 @@ def place_arm(cells: Cells, limb: Limb, size: float, tip: int) -> Arm:
     )
 
 
-def place_leg(cells: Cells, limb: Limb, size: float, pit: float) -> Leg:
+def place_leg(cells: Cells, limb: Limb, size: float, pit: float, *, skirted: bool = False) -> Leg:
     """Place the joints of a leg.
 
     Parameters
@@ -105,6 +106,8 @@ def place_leg(cells: Cells, limb: Limb, size: float, pit: float) -> Leg:
         Way from the head to the feet.
     pit : float
         Level of the armpits.
+    skirted : bool, default False
+        Whether the legs part at the hem of a skirt, which says nothing about hips and knees.
 
     Returns
     -------
@@ -113,10 +116,11 @@ def place_leg(cells: Cells, limb: Limb, size: float, pit: float) -> Leg:
     """
     ankle_level = limb.end - _ANKLE_TO_TOE * size
     by = (limb.start - _HIP_ABOVE_CROTCH * size, pit + _HIP_BELOW_PIT * size, _HIP * size)
-    hip = sum(weight * level for weight, level in zip(_HIP_WEIGHTS, by))
-    knee = 0.5 * (limb.start + _KNEE_SHARE * (ankle_level - limb.start)) + 0.5 * (
-        ankle_level - _KNEE_TO_ANKLE * size
-    )
+    weights = _HIP_WEIGHTS_SKIRTED if skirted else _HIP_WEIGHTS
+    hip = sum(weight * level for weight, level in zip(weights, by))
+    knee = ankle_level - _KNEE_TO_ANKLE * size
+    if not skirted:
+        knee = 0.5 * knee + 0.5 * (limb.start + _KNEE_SHARE * (ankle_level - limb.start))
     foot = limb.way[limb.region] > ankle_level - _FOOT_FROM * size
     return Leg(
         _before(limb, hip, 0.03 * size, 0.12 * size),

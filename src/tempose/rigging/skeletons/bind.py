@@ -9,7 +9,7 @@ from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.embedding import heat_weights
 from tempose.embedding.cells import Cells
 from tempose.embedding.segments import bone_segments
-from tempose.kinematics import rest_transforms
+from tempose.kinematics import find_roles, rest_transforms
 from tempose.rotations import rotate
 from tempose.typing import FloatArray, IntArray
 
@@ -63,7 +63,8 @@ def joint_bones(skeleton: Skeleton) -> tuple[FloatArray, IntArray]:
     Returns
     -------
     segments : (B, 2, 3) ndarray
-        Ends of the bones at rest, metres; a leaf without a tip is a point.
+        Ends of the bones at rest, metres; a leaf without a tip is a point. What stands above the hips of a
+        human only moves the whole and has no bone.
     owner : (B,) ndarray of int
         Joint with which each moves.
     """
@@ -71,7 +72,10 @@ def joint_bones(skeleton: Skeleton) -> tuple[FloatArray, IntArray]:
     assert skeleton.tips is not None
     segments: list[FloatArray] = []
     owner: list[int] = []
+    helpers = _above_hips(skeleton)
     for j in range(skeleton.n_joints):
+        if j in helpers:
+            continue
         ends = [P[child] for child in skeleton.children(j)]
         if not ends:
             tip = skeleton.tips[j]
@@ -79,6 +83,14 @@ def joint_bones(skeleton: Skeleton) -> tuple[FloatArray, IntArray]:
         segments += [np.stack([P[j], end]) for end in ends]
         owner += [j] * len(ends)
     return np.array(segments), np.array(owner, dtype=np.int32)
+
+
+def _above_hips(skeleton: Skeleton) -> set[int]:
+    joint = find_roles(skeleton).get("hips", 0)
+    above: set[int] = set()
+    while (joint := int(skeleton.parents[joint])) >= 0:
+        above.add(joint)
+    return above
 
 
 def normalised_weights(weights: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:

@@ -70,6 +70,10 @@ def human_bound(mesh: Mesh, embedding: Embedding, cells: Cells | None, *, moving
     warnings = list(surface_warnings(mesh))
     if embedding.doubtful:
         warnings.insert(0, _doubt(embedding, moving))
+    if embedding.report.get("skirt"):
+        warnings.append(
+            "the legs part low, as under a skirt or a long coat: hips and knees were placed by the stature"
+        )
     outside = joints_outside(skin.skeleton, cells.solid)
     if outside:
         warnings.append(f"{len(outside)} of 18 joints lie outside the mesh: {', '.join(outside)}")

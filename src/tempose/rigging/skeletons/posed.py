@@ -9,7 +9,7 @@ import numpy as np
 
 from tempose.clips import Skeleton
 from tempose.embedding import Embedding
-from tempose.kinematics import bone_ends, rest_transforms
+from tempose.kinematics import bone_axis, bone_ends, rest_transforms
 from tempose.rotations import conjugate, from_matrix, multiply, procrustes_rotation, rotate, shortest_rotation
 from tempose.typing import FloatArray
 
@@ -36,7 +36,7 @@ def posed_like(skeleton: Skeleton, roles: Mapping[str, int], embedding: Embeddin
     """
     rotations, P = rest_transforms(skeleton)
     target = _targets(skeleton, roles, embedding)
-    scale, turns = _turns(skeleton, roles, P, target)
+    scale, turns = _turns(skeleton, roles, P, target, _terminals(skeleton, roles, embedding))
     Q = np.zeros_like(P)
     for j, above in enumerate(skeleton.parents):
         if j in target:
@@ -72,8 +72,26 @@ def _targets(skeleton: Skeleton, roles: Mapping[str, int], embedding: Embedding)
     return at
 
 
+def _terminals(
+    skeleton: Skeleton, roles: Mapping[str, int], embedding: Embedding
+) -> dict[int, tuple[FloatArray, FloatArray]]:
+    """Directions of head, hands and toes, at rest and in the body."""
+    rotations, P = rest_transforms(skeleton)
+    axes = bone_axis(skeleton, P, rotations, roles)
+    places = dict(zip(embedding.names, embedding.joints))
+    return {
+        roles[role]: (axes[role], end - places[role])
+        for role, end in embedding.ends.items()
+        if role in axes and role in roles
+    }
+
+
 def _turns(
-    skeleton: Skeleton, roles: Mapping[str, int], P: FloatArray, target: Mapping[int, FloatArray]
+    skeleton: Skeleton,
+    roles: Mapping[str, int],
+    P: FloatArray,
+    target: Mapping[int, FloatArray],
+    terminals: Mapping[int, tuple[FloatArray, FloatArray]],
 ) -> tuple[float, FloatArray]:
     """Scale of the whole, and the world rotation of each joint from its rest to the pose of the body."""
     body = [roles[role] for role in _BODY if role in roles]
@@ -86,8 +104,8 @@ def _turns(
     for j, above in enumerate(skeleton.parents):
         turns[j] = whole if above < 0 else turns[above]
         end = ends.get(j, _only_child(skeleton, j))
-        if j in target and end in target and j != roles["hips"]:
-            way, wanted = P[end] - P[j], target[end] - target[j]
+        if j in terminals or (j in target and end in target and j != roles["hips"]):
+            way, wanted = terminals[j] if j in terminals else (P[end] - P[j], target[end] - target[j])
             turns[j] = multiply(shortest_rotation(rotate(turns[j], way), wanted), turns[j])
     return scale, turns
 
