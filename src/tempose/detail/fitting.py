@@ -12,7 +12,7 @@ import numpy as np
 from tempose.clips import MeshClip, SkeletonClip
 from tempose.detail.basis import DetailBasis, compress
 from tempose.detail.inputs import joined_inputs, motion_inputs
-from tempose.detail.multiresolution import ControlMesh, make_control
+from tempose.detail.multiresolution import CoarseBasis, ControlMesh, coarse_basis, make_control
 from tempose.detail.regions import region_grams, region_shares
 from tempose.detail.residuals import Basis, residuals
 from tempose.detail.saving.lean import lean_motion, lean_rig
@@ -40,6 +40,8 @@ class Gathered:
     """T frames."""
     detail: DetailBasis
     """Modes at all vertices."""
+    coarse: CoarseBasis | None = None
+    """What a file keeps in their place where fewer vertices are learned from."""
     seconds: dict[str, float] = field(default_factory=dict[str, float])
     """Of every stage."""
 
@@ -85,16 +87,21 @@ def gather(
     clock("poses")
     shares = region_shares(lean.skin.weights)
     control = _control(lean, clips[0], resolution)
-    D, learned = _residuals(lean, clips, fitted, basis, control, progress)
+    D = _residuals(lean, clips, fitted, basis, progress)
+    mean, learned = D.mean(axis=0, dtype=np.float64), shares
+    if control is not None:
+        D, learned = _lowered(D, control), region_shares(control.skin.weights)
     clock("residuals")
     grams, sizes = region_grams(D, learned)
     training = Training(training_inputs(fitted), grams, sizes)
     clock("inner products")
     detail = compress(D, training.centred().sum(axis=0), tolerance / 100 * lean.skin.mesh.diagonal)
+    coarse = None
     if control is not None:
-        detail = _raised(detail, control)
+        coarse = coarse_basis(detail, mean, control.collapses.matrix)
+        detail = coarse.raised(lean.skin)
     clock("modes")
-    return Gathered(lean, fitted, shares, D, learned, training, detail, seconds)
+    return Gathered(lean, fitted, shares, D, learned, training, detail, coarse, seconds)
 
 
 def training_inputs(motions: Sequence[SkeletonClip]) -> Inputs:
@@ -135,27 +142,21 @@ def _control(rig: Rig, clip: MeshClip, resolution: float | None) -> ControlMesh 
 
 
 def _residuals(
-    rig: Rig,
-    clips: Sequence[MeshClip],
-    motions: Sequence[SkeletonClip],
-    basis: Basis,
-    control: ControlMesh | None,
-    progress: Progress,
-) -> tuple[FloatArray, FloatArray]:
-    if control is not None:
-        clips, rig = [control.clip(clip) for clip in clips], control.rig(rig)
+    rig: Rig, clips: Sequence[MeshClip], motions: Sequence[SkeletonClip], basis: Basis, progress: Progress
+) -> FloatArray:
     parts = [
         residuals(rig, motion, clip.vertices, basis, np.float32, progress)
         for clip, motion in zip(clips, motions)
     ]
-    return np.concatenate(parts), region_shares(rig.skin.weights)
+    return np.concatenate(parts)
 
 
-def _raised(detail: DetailBasis, control: ControlMesh) -> DetailBasis:
-    """Modes of the control mesh at all vertices, in the same steps."""
-    modes = control.raise_values(detail.modes.astype(np.float64))
-    whole = np.clip(np.rint(modes), -32767, 32767).astype(np.int16)
-    return DetailBasis(whole, detail.step, detail.coordinates)
+def _lowered(D: FloatArray, control: ControlMesh) -> FloatArray:
+    """Replay the collapses on residuals: mixed each in the basis of its own vertex, they stay what they are.
+
+    A control mesh with a skin of its own would bend otherwise than the mixture of its vertices does.
+    """
+    return np.stack([control.collapses.replay(d).astype(np.float32) for d in D])
 
 
 class _Clock:

@@ -17,7 +17,9 @@ from tempose.detail.checks import check_clips, check_options
 from tempose.detail.edits import damped, region_strengths, size_ratio, vertex_mask
 from tempose.detail.fitting import gather, rig_inputs, training_inputs
 from tempose.detail.learners import LEARNERS
+from tempose.detail.multiresolution import CoarseBasis
 from tempose.detail.posing import DetailPoser
+from tempose.detail.posing.live import LivePoser
 from tempose.detail.prediction import coefficients, nearest_distances, usual_distance, variances
 from tempose.detail.report import fit_report, held_out
 from tempose.detail.residuals import Basis
@@ -54,6 +56,8 @@ class DetailModel:
         Motion of every clip that was learned from.
     detail_ : DetailBasis
         Residuals of the training in few modes.
+    coarse_ : CoarseBasis or None
+        The same on the vertices of `resolution`, which a file keeps instead.
     shares_ : (n, R) ndarray
         Share of every vertex in every region; the regions are the joints.
     predictor_ : Predictor
@@ -70,6 +74,7 @@ class DetailModel:
     rig_: Rig
     motions_: tuple[SkeletonClip, ...]
     detail_: DetailBasis
+    coarse_: CoarseBasis | None
     shares_: FloatArray
     predictor_: Predictor
     report_: dict[str, Any]
@@ -132,7 +137,7 @@ class DetailModel:
         C = coefficients(predictor, gathered.detail, training.inputs, gathered.shares.shape[1])
         report = fit_report(clips, gathered, chosen, C, self.basis, progress)
         self.rig_, self.motions_, self.detail_ = gathered.rig, gathered.motions, gathered.detail
-        self.shares_, self.predictor_ = gathered.shares, predictor
+        self.shares_, self.predictor_, self.coarse_ = gathered.shares, predictor, gathered.coarse
         self._prepare(training.inputs)
         self.report_ = {**report, "seconds": {**seconds, "total": time.perf_counter() - began}}
         return self
@@ -273,6 +278,28 @@ class DetailModel:
         """
         angle = nearest_distances(self._inputs(motion), self._learned)
         return angle / max(self._usual, np.radians(1.0))
+
+    def live(self, fps: float | None = None) -> LivePoser:
+        """Pose frame by frame, as frames come.
+
+        Parameters
+        ----------
+        fps : float, optional
+            Rate at which they will come; that of the training where left out.
+
+        Returns
+        -------
+        LivePoser
+            Its `pose` takes one frame.
+        """
+        self._fitted()
+        return LivePoser(self, fps)
+
+    @property
+    def mean_angles(self) -> FloatArray:
+        """(J - 1, 3) mean rotation vectors of the training below the root, radians."""
+        self._fitted()
+        return self._near
 
     @property
     def regions(self) -> tuple[str, ...]:

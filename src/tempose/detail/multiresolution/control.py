@@ -114,5 +114,23 @@ def make_control(skin: SkinnedMesh, V: FloatArray | None = None, percent: float 
     down = collapses.matrix
     mesh = Mesh(down @ skin.mesh.vertices, collapses.faces, name=skin.mesh.name, source=skin.mesh.source)
     control = SkinnedMesh(mesh, skin.skeleton, down @ skin.weights)
-    up = spreading(skin.mesh.vertices, mesh.vertices, skin.weights, control.weights)
-    return ControlMesh(collapses, control, up)
+    return ControlMesh(collapses, control, way_up(skin, down))
+
+
+def way_up(skin: SkinnedMesh, down: csr_matrix) -> csr_matrix:
+    """Make the way up that belongs to a way down.
+
+    Parameters
+    ----------
+    skin : SkinnedMesh
+        n vertices.
+    down : (K, n) csr_matrix
+        From all vertices to the control vertices.
+
+    Returns
+    -------
+    (n, K) csr_matrix
+        From control vertices to all.
+    """
+    V, W = skin.mesh.vertices, skin.weights
+    return spreading(V, down @ V, W, down @ W)

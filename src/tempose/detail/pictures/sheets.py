@@ -44,7 +44,7 @@ def detail_sheet(
     (height, width, 3) ndarray of uint8
         sRGB picture.
     """
-    options = {**_look(motion), **look}
+    options: dict[str, Any] = {**_look(motion), **look}
     return contact_sheet(
         [clip, skin, detailed], frames, names=["clip", "skin alone", "with detail"], **options
     )
@@ -80,14 +80,14 @@ def edit_sheet(
     (height, width, 3) ndarray of uint8
         sRGB picture.
     """
-    options = {**_look(motion), **look}
+    options: dict[str, Any] = {**_look(motion), **look}
     clips, names = [before, after], ["before", "after"]
     lines, scalars = [bone_lines(motion), bone_lines(edited)], [None, None]
     if moved:
         far = np.linalg.norm(np.asarray(after.vertices, dtype=np.float64) - before.vertices, axis=-1)
         clips, names = [*clips, after], [*names, "moved by"]
         lines, scalars = [*lines, None], [*scalars, 100.0 * far]
-        options = {"scalars": scalars, "scalar_label": "moved, cm", **options}
+        options |= {"scalars": scalars, "scalar_label": "moved, cm"}
     return contact_sheet(clips, frames, names=names, segments=lines, **options)
 
 
@@ -119,7 +119,7 @@ def variance_sheet(
         sRGB picture.
     """
     spread = 1000.0 * np.sqrt(np.maximum(variance, 0.0))
-    options = {**_look(motion), **look}
+    options: dict[str, Any] = {**_look(motion), **look}
     label = "error expected of a coordinate, mm"
     return contact_sheet(
         [detailed], frames, names=["variance"], scalars=[spread], scalar_label=label, **options

@@ -10,11 +10,13 @@ import numpy as np
 
 from tempose.clips import SkeletonClip
 from tempose.detail.basis import DetailBasis
+from tempose.detail.multiresolution import CoarseBasis
 from tempose.detail.regions import region_shares
 from tempose.detail.residuals import check_basis
 from tempose.detail.saving.packing import pack, unpack
 from tempose.detail.saving.tree import from_arrays, to_arrays
 from tempose.models import load_model, save_model
+from tempose.rigging import Rig
 from tempose.rigging.saving import rig_from_arrays, rig_to_arrays
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
 KIND = "detail"
 """As in the header of the file."""
+_COARSE = ("mean", "owner", "share")
 
 
 def write_detail_model(model: DetailModel, path: str | os.PathLike[str]) -> Path:
@@ -53,8 +56,12 @@ def write_detail_model(model: DetailModel, path: str | os.PathLike[str]) -> Path
         arrays[f"motions/{i}/rotations"] = motion.rotations
         arrays[f"motions/{i}/root_position"] = motion.root_position
         motions.append({"fps": motion.fps, "name": motion.name})
-    arrays["detail/modes"] = model.detail_.modes.reshape(len(model.detail_.modes), -1)
-    arrays["detail/coordinates"] = model.detail_.coordinates
+    kept = model.detail_ if model.coarse_ is None else model.coarse_.basis
+    arrays["detail/modes"] = kept.modes.reshape(len(kept.modes), -1)
+    arrays["detail/coordinates"] = kept.coordinates
+    if model.coarse_ is not None:
+        for name in _COARSE:
+            arrays[f"coarse/{name}"] = getattr(model.coarse_, name)
     tree = to_arrays(model.predictor_, "predictor", arrays)
     packed = {name: pack(array) for name, array in arrays.items()}
     header = {
@@ -113,10 +120,12 @@ def read_detail_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
         for i, entry in enumerate(header["motions"], 1):
             turns, roots = arrays[f"motions/{i}/rotations"], arrays[f"motions/{i}/root_position"]
             motions.append(SkeletonClip(rig.skin.skeleton, turns, roots, entry["fps"], entry["name"]))
+        detail, coarse = _detail(arrays, header, rig)
         state = {
             "rig_": rig,
             "motions_": tuple(motions),
-            "detail_": _detail(arrays, header, len(rig.skin.mesh.vertices)),
+            "detail_": detail,
+            "coarse_": coarse,
             "shares_": shares,
             "predictor_": from_arrays(header["predictor"], arrays),
             "report_": dict(header["report"]),
@@ -126,10 +135,22 @@ def read_detail_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
     return options, state
 
 
-def _detail(arrays: dict[str, Any], header: dict[str, Any], n: int) -> DetailBasis:
+def _detail(
+    arrays: dict[str, Any], header: dict[str, Any], rig: Rig
+) -> tuple[DetailBasis, CoarseBasis | None]:
     modes, coordinates, step = arrays["detail/modes"], arrays["detail/coordinates"], float(header["step"])
-    if modes.dtype != np.int16 or modes.shape != (1 + coordinates.shape[1], 3 * n):
+    n = len(rig.skin.mesh.vertices)
+    coarse = "coarse/owner" in arrays
+    count = modes.shape[-1] // 3 if coarse else n
+    if modes.dtype != np.int16 or modes.shape != (1 + coordinates.shape[1], 3 * count):
         raise ValueError(f"detail/modes of type {modes.dtype} and shape {modes.shape}")
     if not 0 < step < np.inf:
         raise ValueError(f"step must be positive, got {step}")
-    return DetailBasis(modes.reshape(-1, n, 3), step, coordinates)
+    basis = DetailBasis(modes.reshape(-1, count, 3), step, coordinates)
+    if not coarse:
+        return basis, None
+    mean, owner, share = (arrays[f"coarse/{name}"] for name in _COARSE)
+    if mean.shape != (n, 3) or owner.shape != (n,) or share.shape != (n,) or owner.max() >= count:
+        raise ValueError(f"coarse/mean of shape {mean.shape} and coarse/owner of shape {owner.shape}")
+    found = CoarseBasis(basis, mean, owner, share)
+    return found.raised(rig.skin), found
