@@ -8,7 +8,7 @@ import numpy as np
 
 from tempose.clips import Mesh, Skeleton, SkeletonClip, SkinnedMesh
 from tempose.rigging import Rig
-from tempose.rotations import from_rotation_vector, multiply
+from tempose.rotations import conjugate, from_rotation_vector, multiply, rotate
 from tempose.samples import human_character
 
 
@@ -35,7 +35,8 @@ def tube(length: float = 2.0, radius: float = 0.15, rings: int = 24, around: int
     y = np.linspace(0, length, rings)
     a = 2 * np.pi * np.arange(around) / around
     ring = np.column_stack([radius * np.cos(a), np.zeros(around), radius * np.sin(a)])
-    V = np.concatenate([ring + [0, h, 0] for h in y] + [np.array([[0, 0, 0], [0, length, 0]])])
+    caps = np.array([[0, 0, 0], [0, length, 0]])
+    V = np.concatenate([*(ring + np.array([0, h, 0]) for h in y), caps])
     faces: list[tuple[int, int, int]] = []
     for r in range(rings - 1):
         for k in range(around):
@@ -52,8 +53,6 @@ def chain(lengths: tuple[float, ...] = (0.6, 0.7, 0.5), start: float = 0.1) -> S
     rng = np.random.default_rng(5)
     J = len(lengths)
     rest = from_rotation_vector(rng.normal(size=(J, 3)))
-    from tempose.rotations import conjugate, rotate
-
     world = np.array(rest)
     for j in range(1, J):
         world[j] = multiply(world[j - 1], rest[j])
