@@ -14,14 +14,17 @@ from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
 from tempose.clips.blocks import read_block
 from tempose.metrics import compare
 from tempose.rigging.pose_fit import fit_poses
+from tempose.rigging.refine import refine_joints
 from tempose.rigging.rig import Blending, Rig
 from tempose.rigging.skeletons import Bound, given_skin, read_skeleton
 from tempose.rigging.skeletons.frames import frame_mesh, surest_human
+from tempose.rigging.skeletons.inside import share_inside
 from tempose.typing import Progress, silent
 
 SkeletonLike = str | os.PathLike[str] | Skeleton | SkinnedMesh | Rig
 _STILL = 1e-6
 """Share of D below which the frames of a clip are all the same."""
+_INSIDE = 0.9
 
 
 def fit_rig(
@@ -31,6 +34,7 @@ def fit_rig(
     bones: int | None = None,
     frame: int | None = None,
     blending: Blending = "linear",
+    refine: bool | None = None,
     progress: Progress = silent,
 ) -> Rig:
     """Find a skeleton for a clip, bind the mesh to it and fit its motion to the clip.
@@ -50,6 +54,9 @@ def fit_rig(
         Frame that becomes the bind pose; by default the one whose skeleton fits the clip best.
     blending : str, default "linear"
         ``"linear"`` or ``"dual-quaternion"``.
+    refine : bool, optional
+        Whether joints are moved to where the clip turns about them (see `tempose.rigging.refine`). By
+        default those are that were found inside the mesh, not those of a skeleton that fits as it is.
     progress : Progress
         Told about every stage.
 
@@ -78,7 +85,10 @@ def fit_rig(
     }
     if isinstance(clip, Mesh):
         return Rig(bound.skin, rest_clip(bound.skin.skeleton), blending, report)
-    return _fitted(clip, bound.skin, blending, report, clock, progress)
+    skin = bound.skin
+    if refine or (refine is None and report.get("placed", skeleton) in ("human", "posed")):
+        skin = _refined(bound, clip, report, clock, progress)
+    return _fitted(clip, skin, blending, report, clock, progress)
 
 
 def rest_clip(skeleton: Skeleton) -> SkeletonClip:
@@ -127,6 +137,30 @@ def _bound(
     if isinstance(skeleton, str | os.PathLike):
         skeleton = read_skeleton(skeleton, mesh)
     return given_skin(mesh, skeleton.skin if isinstance(skeleton, Rig) else skeleton)
+
+
+def _refined(
+    bound: Bound, clip: MeshClip, report: dict[str, Any], clock: _Clock, progress: Progress
+) -> SkinnedMesh:
+    skin = bound.skin
+    D = max(skin.mesh.diagonal, 1e-300)
+    better = refine_joints(skin, None, clip.vertices, progress=progress)
+    far = int(better.moved.argmax())
+    report["refined"] = {
+        "rms_percent": [round(100 * float(rms) / D, 4) for rms in better.rms],
+        "moved_percent": round(100 * float(better.moved[far]) / D, 3),
+        "moved_most": skin.skeleton.names[far],
+    }
+    if bound.cells is not None:
+        inside = share_inside(better.skin.skeleton, bound.cells.solid)
+        report["refined"]["inside_percent"] = round(100 * inside, 2)
+        if inside < _INSIDE:
+            report["warnings"].append(
+                f"after moving the joints to where the clip turns, only {100 * inside:.0f} % of the length of "
+                "the bones lies inside the mesh; look at the skeleton, or fit without refining"
+            )
+    clock.stage("joints")
+    return better.skin
 
 
 def _fitted(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tempose.clips import SkinnedMesh
+from tempose.embedding.cells import Cells
 
 
 @dataclass(frozen=True)
@@ -18,3 +19,5 @@ class Bound:
     """Measures for the report: what JSON can hold."""
     warnings: tuple[str, ...] = ()
     """What a person should know before trusting it, one sentence each."""
+    cells: Cells | None = None
+    """The inside of the mesh, where it was looked for."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from tempose.typing import FloatArray, Progress
 _TRIED, _FITTED, _SAMPLE = 6, 3, 12
 """Frames in which a skeleton is sought; of these, how many rigs are fitted; to how many frames."""
 _UNLIKE = 3.0
+_SURE = 0.7
+"""Score from which no other frame is looked at: all crane frames below it fit the clip well."""
 
 
 @dataclass(frozen=True)
@@ -87,9 +89,10 @@ def surest_human(clip: MeshClip, frame: int | None, progress: Progress) -> Bound
 
     Notes
     -----
-    A skeleton is sought in six frames spread over the clip. The three in which the body is most human and its
-    sides most alike are bound and fitted to twelve frames; the least rms wins. On a captured man, frames
-    differ by a factor of two in that rms, and penalties alone do not tell which is good.
+    A skeleton is sought in six frames spread over the clip, the ends first. One in which the body is human
+    and alike on both sides beyond doubt is taken at once. Else the three that come nearest to it are bound
+    and fitted to twelve frames, and the least rms wins: on a captured man, frames differ by a factor of two
+    in that rms, and penalties alone do not tell which is good.
     """
     if frame is not None:
         mesh = frame_mesh(clip, frame)
@@ -118,6 +121,7 @@ def surest_human(clip: MeshClip, frame: int | None, progress: Progress) -> Bound
 def _tried(clip: MeshClip, progress: Progress) -> list[_Candidate]:
     """Read bodies in some frames, the surest first; those that cannot be read at all are left out."""
     frames = np.unique(np.linspace(0, clip.n_frames - 1, _TRIED).round().astype(int))
+    frames = frames[np.argsort(-np.abs(frames - (clip.n_frames - 1) / 2), kind="stable")]
     found: list[_Candidate] = []
     failure: ValueError | None = None
     for k, t in enumerate(frames):
@@ -127,6 +131,8 @@ def _tried(clip: MeshClip, progress: Progress) -> list[_Candidate]:
         except ValueError as error:
             failure = error
         progress(k + 1, len(frames), "bind pose")
+        if found and found[-1].score < _SURE:
+            return found[-1:]
     if not found:
         assert failure is not None
         raise failure
@@ -144,4 +150,4 @@ def _sample_rms(bound: Bound, sample: FloatArray) -> float:
 
 def _with_facts(bound: Bound, frame: int, table: list[dict[str, Any]]) -> Bound:
     facts = bound.facts | {"frame": frame} | ({"candidates": table} if len(table) > 1 else {})
-    return Bound(bound.skin, facts, bound.warnings)
+    return replace(bound, facts=facts)

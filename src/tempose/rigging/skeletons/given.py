@@ -51,7 +51,7 @@ def _heated(mesh: Mesh, skeleton: Skeleton, warnings: tuple[str, ...]) -> Bound:
     placed = place_skeleton(skeleton, mesh)
     skin = bind(mesh, placed.skeleton, cells=placed.cells)
     facts = {"placed": placed.how, "inside_percent": 100 * placed.inside}
-    return Bound(skin, facts, (*warnings, *placed.warnings, *surface_warnings(mesh)))
+    return Bound(skin, facts, (*warnings, *placed.warnings, *surface_warnings(mesh)), placed.cells)
 
 
 def _as_it_is(mesh: Mesh, skin: SkinnedMesh) -> Bound:

@@ -81,7 +81,7 @@ def human_bound(mesh: Mesh, embedding: Embedding, cells: Cells | None, *, moving
         "inside_percent": 100 * share_inside(skin.skeleton, cells.solid),
         "joints_outside": outside,
     }
-    return Bound(skin, {"embedding": facts}, tuple(warnings))
+    return Bound(skin, {"embedding": facts}, tuple(warnings), cells)
 
 
 def check_human(embedding: Embedding, *, moving: bool) -> None:
