@@ -62,6 +62,38 @@ class ProcessBank:
         left = prior - np.einsum("rqm,rqm->rq", alike, seen)
         return weights, np.maximum(left, 0.0) + self._noise[:, :, 0]
 
+    def solve(self, Y: FloatArray) -> FloatArray:
+        """Prepare outputs for `means`.
+
+        Parameters
+        ----------
+        Y : (T, K) float
+            Centred outputs of the observations.
+
+        Returns
+        -------
+        (R, m, K) ndarray
+            What similarities are multiplied by.
+        """
+        return self._solver @ Y
+
+    def means(self, X: FloatArray, solved: FloatArray) -> FloatArray:
+        """Predict few outputs, without their variance: much quicker than to mix them from all observations.
+
+        Parameters
+        ----------
+        X : (Q, P) float
+            Inputs.
+        solved : (R, m, K) float
+            From `solve`.
+
+        Returns
+        -------
+        (R, Q, K) ndarray
+            Predicted outputs.
+        """
+        return self._similarity(X)[0] @ solved
+
     def _similarity(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Covariances (R, Q, m) with what is compared, and prior variances (R, Q), without noise."""
         Z = X - self._centre

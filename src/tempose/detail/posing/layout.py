@@ -61,7 +61,7 @@ class Layout:
 
 @dataclass(frozen=True, eq=False)
 class BlockWeights:
-    """Rows of weights, of every block only the columns that are not zero there."""
+    """Rows of weights, of every block only the columns that are not zero there, filled up to fours by zeros."""
 
     starts: IntArray
     """(b + 1,) int32, where the columns of each block begin."""
@@ -108,6 +108,12 @@ def block_weights(layout: Layout, weights: FloatArray, dtype: type = np.float32)
     """
     blocks = layout.blocks(np.asarray(weights, dtype=dtype))
     used = (blocks != 0).any(axis=2)
-    block, column = np.nonzero(used)
-    starts = np.searchsorted(block, np.arange(layout.n_blocks + 1)).astype(np.int32)
-    return BlockWeights(starts, column.astype(np.int32), np.ascontiguousarray(blocks[block, column]))
+    counts = 4 * -(-np.maximum(used.sum(axis=1), 1) // 4)
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+    columns = np.zeros(starts[-1], np.int32)
+    values = np.zeros((starts[-1], BLOCK), dtype)
+    for b, start in enumerate(starts[:-1]):
+        own = np.flatnonzero(used[b])
+        columns[start : start + len(own)] = own
+        values[start : start + len(own)] = blocks[b, own]
+    return BlockWeights(starts, columns, values)

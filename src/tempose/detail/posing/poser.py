@@ -9,7 +9,7 @@ import numpy as np
 from tempose.clips import SkeletonClip
 from tempose.detail.basis import DetailBasis
 from tempose.detail.posing._kernels import add_detail
-from tempose.detail.posing.layout import block_weights
+from tempose.detail.posing.layout import BLOCK, block_weights
 from tempose.detail.posing.skin import Basis, BlockSkin
 from tempose.rigging import Rig
 from tempose.typing import FloatArray, IntArray, Progress, silent
@@ -44,8 +44,11 @@ class DetailPoser:
         layout = self.skin.layout
         scaled = shares if scale is None else shares * scale[:, None]
         self._shares = block_weights(layout, scaled)
+        self.columns: int = 4 * -(-len(detail.modes) // 4)
+        """Columns of coefficients: mean and modes, filled up to fours."""
         blocks: list[Any] = [layout.blocks(mode) for mode in detail.modes]
-        self._modes: IntArray = np.ascontiguousarray(np.stack(blocks, axis=1))
+        self._modes: IntArray = np.zeros((layout.n_blocks, self.columns, 3, BLOCK), np.int16)
+        self._modes[:, : len(detail.modes)] = np.stack(blocks, axis=1)
 
     def frame(
         self, row: FloatArray, turn: FloatArray, root: FloatArray, C: FloatArray, V: FloatArray
@@ -58,8 +61,8 @@ class DetailPoser:
             Of `BlockSkin.rows`.
         root : (3,) float
             Position of the root, metres.
-        C : (R, 1 + K) float32
-            Coefficient of mean and modes in every region, metres.
+        C : (R, columns) float32
+            Coefficient of mean and modes in every region, metres; zeros from 1 + K on.
         V : (n, 3) float
             Filled with vertices, metres.
         """
@@ -88,12 +91,14 @@ class DetailPoser:
         n = len(self.skin.rig.skin.mesh.vertices)
         V = np.zeros((motion.n_frames, n, 3), np.float32)
         rows, turns = self.skin.rows(motion)
+        padded = None if C is None else np.zeros((C.shape[1], self.columns), np.float32)
         for t, frame in enumerate(V):
             root = motion.root_position[t]
-            if C is None:
+            if C is None or padded is None:
                 self.skin.pose(rows[t], turns[t])
                 self.skin.write(root, frame)
             else:
-                self.frame(rows[t], turns[t], root, np.ascontiguousarray(C[t], dtype=np.float32), frame)
+                padded[:, : C.shape[2]] = C[t]
+                self.frame(rows[t], turns[t], root, padded, frame)
             progress(t + 1, len(V), "posing")
         return V
