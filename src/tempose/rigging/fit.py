@@ -156,8 +156,8 @@ def _refined(
         report["refined"]["inside_percent"] = round(100 * inside, 2)
         if inside < _INSIDE:
             report["warnings"].append(
-                f"after moving the joints to where the clip turns, only {100 * inside:.0f} % of the length of "
-                "the bones lies inside the mesh; look at the skeleton, or fit without refining"
+                f"after moving the joints to where the clip turns, only {100 * inside:.0f} % of the length "
+                "of the bones lies inside the mesh; look at the skeleton, or fit without refining"
             )
     clock.stage("joints")
     return better.skin
