@@ -28,6 +28,7 @@ def descend_dual(
     seen: FrameMoments,
     frames: FloatArray,
     A: FloatArray,
+    bones: FloatArray,
     R: FloatArray,
     root: FloatArray,
     values: FloatArray,
@@ -49,6 +50,8 @@ def descend_dual(
         Those frames, metres.
     A : (4 J, 4 J) float
         Second moments about the joints.
+    bones : (J, 3) float
+        From `bone_steps`.
     R : (T, J, 3, 3) float
         Turns of the bones: the start, then the result.
     root : (T, 3) float
@@ -74,7 +77,6 @@ def descend_dual(
     skeleton = made.skin.skeleton
     joints = rest_transforms(skeleton)[1] - made.centre
     parents = skeleton.parents.astype(np.int64)
-    bones = joints - joints[np.maximum(parents, 0)]
     rows = rows_by_strength(made.skin.weights)
     V = made.skin.mesh.vertices - made.centre
     for part in cut_blocks(len(seen), V.size, _BLOCK):

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tempose.clips import SkeletonClip, SkinnedMesh
+from tempose.clips import Skeleton, SkeletonClip, SkinnedMesh
 from tempose.kinematics import local_rotations, rest_transforms
 from tempose.rigging.pose_fit.dual_descent import descend_dual
 from tempose.rigging.pose_fit.moments import FrameMoments, SkinMoments, about_joints
 from tempose.rigging.pose_fit.starts import bone_sums
 from tempose.rigging.pose_fit.sweep import sweep_back, sweep_forward
-from tempose.rotations import from_matrix
+from tempose.rotations import from_matrix, rotate
 from tempose.typing import BoolArray, FloatArray, IntArray, Progress, silent
 
 _AT_ONCE = 64
@@ -38,6 +38,7 @@ def fit_poses(
     *,
     fps: float = 30.0,
     blending: str = "linear",
+    skeleton: Skeleton | None = None,
     steps: int = 30,
     tolerance: float = 1e-6,
     progress: Progress = silent,
@@ -54,6 +55,9 @@ def fit_poses(
         Frames per second.
     blending : str, default "linear"
         ``"linear"`` or ``"dual-quaternion"``.
+    skeleton : Skeleton, optional
+        The joints of the skin with the bone lengths that they have in the clip; by default those of the bind
+        pose. Files know skins whose clips were made on slightly other bones.
     steps : int, default 30
         Largest number of Newton steps from one start.
     tolerance : float, default 1e-6
@@ -90,7 +94,7 @@ def fit_poses(
     made = SkinMoments(skin)
     seen = made.frames(frames)
     dual = frames if blending == "dual-quaternion" else None
-    return _fit(made, seen, dual, fps, steps, tolerance, progress)
+    return _fit(made, seen, skeleton, dual, fps, steps, tolerance, progress)
 
 
 def fit_moments(
@@ -124,12 +128,13 @@ def fit_moments(
     PoseFit
         Motion and how well it fits.
     """
-    return _fit(made, seen, None, fps, steps, tolerance, progress)
+    return _fit(made, seen, None, None, fps, steps, tolerance, progress)
 
 
 def _fit(
     made: SkinMoments,
     seen: FrameMoments,
+    posed: Skeleton | None,
     frames: FloatArray | None,
     fps: float,
     steps: int,
@@ -139,7 +144,7 @@ def _fit(
     skeleton = made.skin.skeleton
     joints = rest_transforms(skeleton)[1] - made.centre
     parents = skeleton.parents.astype(np.int64)
-    bones = joints - joints[np.maximum(parents, 0)]
+    bones = bone_steps(skeleton, posed or skeleton)
     A, B = about_joints(made.A, seen.moments, joints)
     T, J = len(seen), len(parents)
     R, root, values = np.zeros((T, J, 3, 3)), np.zeros((T, 3)), np.zeros(T)
@@ -153,12 +158,42 @@ def _fit(
         progress(stop, T, "poses")
     sweep_back(*known, parents, bones, *found)
     if frames is not None:
-        descend_dual(made, seen, frames, A, *found, progress)
+        descend_dual(made, seen, frames, A, bones, *found, progress)
     squares = np.maximum(values, 0.0) + seen.loose
     errors = np.sqrt(squares / len(made.skin.mesh.vertices))
     rotations = continuous_signs(local_rotations(skeleton, from_matrix(R)))
-    motion = SkeletonClip(skeleton, rotations, root + seen.centres, fps)
+    motion = SkeletonClip(posed or skeleton, rotations, root + seen.centres, fps)
     return PoseFit(motion, errors, iterations, converged)
+
+
+def bone_steps(bind: Skeleton, posed: Skeleton) -> FloatArray:
+    """Take the steps from parent to joint that the turn of the parent's bone carries into the world.
+
+    Parameters
+    ----------
+    bind : Skeleton
+        J joints in the bind pose.
+    posed : Skeleton
+        The same joints, perhaps with other bone lengths.
+
+    Returns
+    -------
+    (J, 3) ndarray
+        Metres, in the axes of the bind pose; zero for the root.
+
+    Raises
+    ------
+    ValueError
+        If the joints differ.
+    """
+    if posed.names != bind.names or (posed.parents != bind.parents).any():
+        raise ValueError(
+            f"skeleton must have the {bind.n_joints} joints of the skin in their order, "
+            f"got {posed.n_joints}, first {posed.names[0]!r}"
+        )
+    steps = rotate(rest_transforms(bind)[0][np.maximum(bind.parents, 0)], posed.offsets)
+    steps[0] = 0
+    return steps
 
 
 def continuous_signs(q: FloatArray) -> FloatArray:
