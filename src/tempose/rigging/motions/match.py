@@ -112,7 +112,7 @@ def matched_motion(
     if turn is not None:
         motion = _turned(motion, turn)
         warnings.append("The motion lay along other axes than the rig; it was turned by right angles to fit.")
-    rests = compare_rests(skeleton, motion.skeleton, pairs.source)
+    rests = compare_rests(skeleton, motion, pairs.source)
     local = _rotations(skeleton, motion, pairs, rests)
     places = forward_kinematics(motion.skeleton, motion.rotations, motion.root_position)[1]
     root = root_path(skeleton, local, places, pairs.source, rests)
@@ -157,7 +157,7 @@ def _rotations(skeleton: Skeleton, motion: SkeletonClip, pairs: JointPairs, rest
     """Local rotations (T, J, 4) of our joints."""
     source = motion.skeleton
     theirs = forward_kinematics(source, motion.rotations, motion.root_position)[0]
-    relative = multiply(theirs, conjugate(rest_transforms(source)[0]))
+    relative = multiply(theirs, conjugate(rests.reference.rotations))
     posed = multiply(rests.turns, rest_transforms(skeleton)[0])
     halfway = {} if rests.same else _bent_spine(skeleton, source, pairs)
     assert skeleton.rest_rotations is not None
@@ -186,10 +186,14 @@ def _bent_spine(skeleton: Skeleton, source: Skeleton, pairs: JointPairs) -> dict
 
 
 def _rest_warnings(skeleton: Skeleton, rests: Rests) -> list[str]:
+    notes = [rests.reference.note] if rests.reference.note else []
     if rests.same or np.isnan(rests.angles).all() or np.nanmax(rests.angles) < _WORTH_SAYING:
-        return []
+        return notes
     worst = int(np.nanargmax(rests.angles))
     line = f"Rest poses differ by up to {rests.angles[worst]:.0f} degrees, at {skeleton.names[worst]}"
     if rests.angles[worst] < _DOUBTFUL:
-        return [f"{line}; the motion is carried over relative to the pose that both can take."]
-    return [f"{line}: look at the result; a source at rest in a pose nearer to the rig's follows better."]
+        return [*notes, f"{line}; the motion is carried over relative to the pose that both can take."]
+    return [
+        *notes,
+        f"{line}: look at the result; a source at rest in a pose nearer to the rig's follows better.",
+    ]

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tempose.clips import Skeleton
+from tempose.clips import Skeleton, SkeletonClip
 from tempose.kinematics import find_roles, rest_transforms
+from tempose.rigging.motions.reference import Reference, choose_reference, facing
 from tempose.rotations import (
     IDENTITY,
     conjugate,
     from_matrix,
-    from_rotation_vector,
     multiply,
     polar_rotation,
     procrustes_rotation,
@@ -33,23 +33,25 @@ class Rests:
 
     turns: FloatArray
     """(J, 4) world rotation of each of our joints that brings our rest pose into theirs."""
+    reference: Reference
+    """Their pose that ours is brought into."""
     angles: FloatArray
-    """(J,) degrees between the bones at rest, largest a joint; NaN where there is no pair of bones."""
+    """(J,) degrees between the bones, largest a joint, bodies facing alike; NaN where there is no pair."""
     scale: float
     """Our size over theirs."""
     same: bool
     """Whether both have the same bones up to scale and pose."""
 
 
-def compare_rests(skeleton: Skeleton, source: Skeleton, pairs: dict[int, int]) -> Rests:
+def compare_rests(skeleton: Skeleton, motion: SkeletonClip, pairs: dict[int, int]) -> Rests:
     """Compare the rest poses of paired joints.
 
     Parameters
     ----------
     skeleton : Skeleton
         Ours, J joints.
-    source : Skeleton
-        Theirs.
+    motion : SkeletonClip
+        Theirs, K joints.
     pairs : dict of int to int
         Our joint to theirs.
 
@@ -61,27 +63,52 @@ def compare_rests(skeleton: Skeleton, source: Skeleton, pairs: dict[int, int]) -
         hip sockets and shoulders sit elsewhere in every skeleton. Of anything else joints with several bones
         are turned as a whole, with one by shortest rotations.
     """
-    (turn, ours), (other, theirs) = rest_transforms(skeleton), rest_transforms(source)
+    source = motion.skeleton
+    turn, ours = rest_transforms(skeleton)
     above = [_paired_above(skeleton, pairs, j) for j in range(skeleton.n_joints)]
-    bones = _bones(pairs, above, ours, theirs)
+    reference = Reference(*rest_transforms(source))
+    bones = _bones(pairs, above, ours, reference.places)
     roles = find_roles(skeleton)
     legs = [roles[role] for role in _LEG_ENDS if role in roles]
-    scale, same = _shape(bones, pairs, above, ours, theirs, legs)
-    # programs put the end of a last bone where they like: in the same body it says nothing
-    bones |= {} if same else _last_bones(skeleton, source, pairs.keys() - bones.keys(), pairs)
-    trunk = set[int]() if same else {roles[role] for role in _TRUNK if role in roles}
-    turns, angles = np.tile(IDENTITY, (skeleton.n_joints, 1)), np.full(skeleton.n_joints, np.nan)
-    facing = _facing(roles, pairs, ours, theirs)
-    for j in range(skeleton.n_joints):
-        start = turns[above[j]] if above[j] >= 0 else (facing if trunk else IDENTITY)
-        here, there = bones.get(j, (np.zeros((0, 3)), np.zeros((0, 3))))
-        turns[j] = start if j in trunk else _turned(start, here, there)
-        if len(here):
-            cosine = (_unit(here) * _unit(there)).sum(axis=1)
-            angles[j] = np.degrees(np.arccos(np.clip(cosine, -1, 1))).max()
+    scale, same = _shape(bones, pairs, above, ours, reference.places, legs)
     if same and _same_bases(skeleton, source, pairs, scale):
-        turns = multiply(other[[pairs[j] for j in range(skeleton.n_joints)]], conjugate(turn))
-    return Rests(turns, angles, scale, same)
+        turns = multiply(reference.rotations[[pairs[j] for j in range(skeleton.n_joints)]], conjugate(turn))
+        return Rests(turns, reference, _angles(bones, IDENTITY, skeleton.n_joints), scale, True)
+    start = IDENTITY
+    if not same:
+        reference = choose_reference(skeleton, motion, pairs)
+        bones = _bones(pairs, above, ours, reference.places)
+        # programs put the end of a last bone where they like: in the same body it says nothing
+        bones |= _last_bones(skeleton, source, reference, pairs.keys() - bones.keys(), pairs)
+        start = facing(roles, pairs, ours, reference.places)
+        if reference.note:
+            start = _leaning(start, roles, pairs, ours, reference.places)
+    trunk = set[int]() if same else {roles[role] for role in _TRUNK if role in roles}
+    turns = np.tile(start, (skeleton.n_joints, 1))
+    for j in range(skeleton.n_joints):
+        turns[j] = turns[above[j]] if above[j] >= 0 else start
+        if j in bones and j not in trunk:
+            turns[j] = _turned(turns[j], *bones[j])
+    return Rests(turns, reference, _angles(bones, start, skeleton.n_joints), scale, same)
+
+
+def _leaning(
+    start: FloatArray, roles: dict[str, int], pairs: dict[int, int], ours: FloatArray, theirs: FloatArray
+) -> FloatArray:
+    """Lay our trunk along theirs, which in a frame of the motion may lean."""
+    if not all(roles.get(role, -1) in pairs for role in ("hips", "neck")):
+        return start
+    hips, neck = roles["hips"], roles["neck"]
+    along = rotate(start, ours[neck] - ours[hips])
+    return multiply(shortest_rotation(along, theirs[pairs[neck]] - theirs[pairs[hips]]), start)
+
+
+def _angles(bones: dict[int, tuple[FloatArray, FloatArray]], start: FloatArray, J: int) -> FloatArray:
+    angles = np.full(J, np.nan)
+    for j, (here, there) in bones.items():
+        cosine = (_unit(rotate(start, here)) * _unit(there)).sum(axis=1)
+        angles[j] = np.degrees(np.arccos(np.clip(cosine, -1, 1))).max()
+    return angles
 
 
 def axes_turn(skeleton: Skeleton, source: Skeleton, pairs: dict[int, int]) -> FloatArray | None:
@@ -141,11 +168,11 @@ def _bones(
 
 
 def _last_bones(
-    skeleton: Skeleton, source: Skeleton, joints: set[int], pairs: dict[int, int]
+    skeleton: Skeleton, source: Skeleton, reference: Reference, joints: set[int], pairs: dict[int, int]
 ) -> dict[int, tuple[FloatArray, FloatArray]]:
     """Vectors (1, 3) from joints to their tips, where both skeletons know them."""
     ours = rotate(rest_transforms(skeleton)[0], np.nan_to_num(np.asarray(skeleton.tips)))
-    theirs = rotate(rest_transforms(source)[0], np.nan_to_num(np.asarray(source.tips)))
+    theirs = rotate(reference.rotations, np.nan_to_num(np.asarray(source.tips)))
     return {j: (ours[[j]], theirs[[pairs[j]]]) for j in joints if ours[j].any() and theirs[pairs[j]].any()}
 
 
@@ -191,23 +218,11 @@ def _same_bases(skeleton: Skeleton, source: Skeleton, pairs: dict[int, int], sca
 
 def _turned(start: FloatArray, here: FloatArray, there: FloatArray) -> FloatArray:
     """Rotation that brings bones into line, as near to `start` as they allow."""
-    if not len(here):
-        return start
     moved = _unit(rotate(start, here))
     other = _unit(there)
     if len(here) > 1 and np.linalg.svd(moved, compute_uv=False)[1] > 0.1:
         return multiply(from_matrix(polar_rotation(other.T @ moved)), start)
     return multiply(shortest_rotation(moved.sum(axis=0), other.sum(axis=0)), start)
-
-
-def _facing(roles: dict[str, int], pairs: dict[int, int], ours: FloatArray, theirs: FloatArray) -> FloatArray:
-    """Turn about the vertical between the directions in which two bodies face."""
-    left, right = roles.get("left_thigh", -1), roles.get("right_thigh", -1)
-    if left not in pairs or right not in pairs:
-        return IDENTITY
-    a, b = ours[left] - ours[right], theirs[pairs[left]] - theirs[pairs[right]]
-    angle = np.arctan2(-b[2], b[0]) - np.arctan2(-a[2], a[0])
-    return from_rotation_vector(np.array([0.0, angle, 0.0]))
 
 
 def _unit(x: FloatArray) -> FloatArray:
