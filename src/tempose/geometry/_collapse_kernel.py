@@ -13,7 +13,7 @@ _FOLDED = 0.1
 
 
 @njit(cache=True)
-def record_collapses(P, F, Q, on_rim, count):
+def record_collapses(P, F, edges, Q, on_rim, count):
     """Collapse edges, cheapest first; P, F and Q are used up.
 
     Parameters
@@ -22,6 +22,8 @@ def record_collapses(P, F, Q, on_rim, count):
         Vertices.
     F : (m, 3) int64
         Faces.
+    edges : (e, 2) int64
+        Each once, the smaller vertex first: it is the one that stays.
     Q : (n, 4, 4) float
         Quadrics.
     on_rim : (n,) bool
@@ -48,12 +50,10 @@ def record_collapses(P, F, Q, on_rim, count):
     stamp = np.zeros(n, dtype=np.int64)
     heap = [(0.0, np.int64(0), np.int64(0), np.int64(0), np.int64(0), 0.0)]
     heap.pop()
-    for f in range(m):
-        for c in range(3):
-            a, b = F[f, c], F[f, (c + 1) % 3]
-            # both directions of a closed mesh name an edge; one of an open one does
-            cost, share = _best(P, Q, a, b)
-            heap.append((cost, a, b, stamp[a], stamp[b], share))
+    for e in range(len(edges)):
+        a, b = edges[e, 0], edges[e, 1]
+        cost, share = _best(P, Q, a, b)
+        heap.append((cost, a, b, stamp[a], stamp[b], share))
     heapify(heap)
     pairs = np.zeros((n, 2), dtype=np.int64)
     shares = np.zeros(n)
@@ -210,6 +210,7 @@ def _push_round(P, F, Q, first, after, live, stamp, heap, marks, turn, a):
                 v = F[f, c]
                 if v != a and marks[v] != turn:
                     marks[v] = turn
-                    cost, share = _best(P, Q, a, v)
-                    heappush(heap, (cost, a, v, stamp[a], stamp[v], share))
+                    i, j = min(a, v), max(a, v)
+                    cost, share = _best(P, Q, i, j)
+                    heappush(heap, (cost, i, j, stamp[i], stamp[j], share))
         corner = after[corner]
