@@ -10,14 +10,14 @@ _VERTICES = 1024
 """Vertices that are multiplied at a time: few enough for the sums of float32 to keep their digits."""
 
 
-def region_shares(weights: FloatArray, least: float = 0.02) -> FloatArray:
+def region_shares(weights: FloatArray, least: float = 0.05) -> FloatArray:
     """Share of every vertex in every region: its skin weights, without the long tails that heat has.
 
     Parameters
     ----------
     weights : (n, J) float
         Skin weights.
-    least : float, default 0.02
+    least : float, default 0.05
         Taken off every weight, so that small ones fade to nothing without a seam.
 
     Returns

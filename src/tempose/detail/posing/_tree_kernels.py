@@ -101,6 +101,45 @@ def rotation_vectors(
 
 
 @njit(cache=True)
+def linear_row(turns: FloatArray, shifts: FloatArray, M: FloatArray) -> None:
+    """Lay out one frame for linear blend skinning, as `linear_rows` does.
+
+    Parameters
+    ----------
+    turns, shifts : (J, 4) float, (J, 3) float
+        Of the joints.
+    M : (J, 16) float
+        Filled with matrix by rows, shift, quaternion.
+    """
+    for j in range(len(turns)):
+        w, x, y, z = turns[j, 0], turns[j, 1], turns[j, 2], turns[j, 3]
+        M[j, 0], M[j, 1], M[j, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+        M[j, 3], M[j, 4], M[j, 5] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+        M[j, 6], M[j, 7], M[j, 8] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+        M[j, 9], M[j, 10], M[j, 11] = shifts[j, 0], shifts[j, 1], shifts[j, 2]
+        M[j, 12], M[j, 13], M[j, 14], M[j, 15] = w, x, y, z
+
+
+@njit(cache=True)
+def dual_row(turns: FloatArray, shifts: FloatArray, M: FloatArray) -> None:
+    """Lay out one frame for dual-quaternion skinning, as `dual_rows` does.
+
+    Parameters
+    ----------
+    turns, shifts : (J, 4) float, (J, 3) float
+        Of the joints.
+    M : (J, 8) float
+        Filled with real and dual parts.
+    """
+    pure, dual = np.zeros(4), np.zeros(4)
+    for j in range(len(turns)):
+        pure[1], pure[2], pure[3] = 0.5 * shifts[j, 0], 0.5 * shifts[j, 1], 0.5 * shifts[j, 2]
+        _multiply(pure, turns[j], dual)
+        for c in range(4):
+            M[j, c], M[j, 4 + c] = turns[j, c], dual[c]
+
+
+@njit(cache=True)
 def _multiply(p: FloatArray, q: FloatArray, out: FloatArray) -> None:
     out[0] = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3]
     out[1] = p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2]

@@ -9,8 +9,12 @@ import numpy as np
 
 from tempose._validate import as_floats
 from tempose.detail.learners.kernel_predictor import KernelPredictor
-from tempose.detail.posing._tree_kernels import joint_rows, rotation_vectors
-from tempose.detail.posing.joints import dual_rows, linear_rows
+from tempose.detail.posing._tree_kernels import (
+    dual_row,
+    joint_rows,
+    linear_row,
+    rotation_vectors,
+)
 from tempose.detail.posing.poser import DetailPoser
 from tempose.detail.training import Inputs
 from tempose.kinematics import rest_transforms
@@ -48,11 +52,13 @@ class LivePoser:
         self._parents, self._offsets = skeleton.parents, skeleton.offsets
         self._bind_back, self._bind_arms = conjugate(bind_turn), bind_place - bind_place[0]
         self._rest_back, self._names = conjugate(rest), skeleton.names[1:]
-        self._layout = dual_rows if rig.blending == "dual-quaternion" else linear_rows
+        dual = rig.blending == "dual-quaternion"
+        self._fill = dual_row if dual else linear_row
         self._pace = 1.0 if fps is None else fps / model.motions_[0].fps
         self._near = model.mean_angles
         J, R = skeleton.n_joints, len(model.regions)
         self._turns, self._shifts = np.zeros((J, 4)), np.zeros((J, 3))
+        self._row = np.zeros((J, 8 if dual else 16), np.float32)
         self._modes = slice(1, 1 + model.detail_.n_modes)
         self._C = np.zeros((R, self._poser.columns), np.float32)
         self._C[:, 0] = model.detail_.step
@@ -100,9 +106,9 @@ class LivePoser:
             self._turns,
             self._shifts,
         )
-        row = self._layout(self._turns, self._shifts).astype(np.float32)
-        whole = self._turns[0] if self._poser.skin.basis == "root" else _NO_TURN
-        self._poser.frame(row, whole, root, self._C, self._V)
+        self._fill(self._turns, self._shifts, self._row)
+        whole = self._turns[0].astype(np.float32) if self._poser.skin.basis == "root" else _NO_TURN
+        self._poser.frame(self._row, whole, root, self._C, self._V)
         return self._V
 
     def _remember(self, rotations: FloatArray) -> None:
