@@ -61,7 +61,7 @@ def write_bvh(
     table = np.concatenate([_clean(root), _clean(angles.reshape(len(root), -1))], axis=1)
     with atomic_path(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
         file.writelines(f"{line}\n" for line in ["HIERARCHY", *_hierarchy(skeleton, up, unit), "MOTION"])
-        file.write(f"Frames: {len(table)}\nFrame Time: {1.0 / clip.fps:.10g}\n")
+        file.write(f"Frames: {len(table)}\nFrame Time: {1.0 / clip.fps:.10f}\n")
         np.savetxt(file, table, fmt=_NUMBER)
 
 

@@ -194,4 +194,4 @@ def frame_times(stage: Stage, samples: set[float], fps: float | None) -> FrameTi
         raise stage.error(
             f"{len(codes)} samples from {start:g} to {end:g} would make {count} frames at {rate:g} fps"
         )
-    return FrameTimes(start + step * np.arange(count), rate, shown if even else None)
+    return FrameTimes(start + step * np.arange(count), float(rate), float(shown) if even else None)
