@@ -12,7 +12,7 @@ from tempose.rigging.decomposition.growth import exchange, grow
 from tempose.rigging.decomposition.problem import Problem, State
 from tempose.rigging.decomposition.steps import weight_step
 from tempose.rotations import from_matrix, to_matrix
-from tempose.typing import FloatArray, Progress, silent
+from tempose.typing import FloatArray, IntArray, Progress, silent
 
 _EXACT = 1e-6  # rms distance, in diagonals, below which a clip counts as explained: float32 files reach 1e-7
 _SEARCH = 1500  # vertices on which bones are sought; the whole mesh then settles them
@@ -114,21 +114,82 @@ def decompose(
     rest = as_floats(rest, "rest", ("n", 3))
     frames = as_floats(frames, "frames", ("T", len(rest), 3))
     B, K = _counts(frames, bones, influences)
-    centre, centres = rest.mean(axis=0), frames.mean(axis=1)
-    scale = float(np.linalg.norm(np.ptp(rest, axis=0)))
-    if not scale > 0:
-        raise ValueError("rest must span some space, got all vertices at one place")
-    problem = Problem.of((rest - centre) / scale, (frames - centres[:, None]) / scale)
+    problem, (centre, centres, scale) = arranged(frames, rest)
     state = _search(problem, B, K, np.random.default_rng(seed), progress)
     done, converged = alternate(problem, state, iterations, tolerance, progress)
     _refuse_empty(state, B)
     R = state.motions[..., :3]
     shift = scale * state.motions[..., 3] + centres[:, None] - R @ centre
-    weights = np.zeros((len(rest), B))
-    np.add.at(weights, (np.arange(len(rest))[:, None], state.bones), state.weights)
+    weights = dense(state)
     rms = scale * float(np.sqrt(state.left.mean() / len(frames)))
     turn = from_matrix(R)
     return Decomposition(rest, read_only(weights), read_only(turn), read_only(shift), rms, done, converged)
+
+
+def arranged(frames: FloatArray, rest: FloatArray) -> tuple[Problem, tuple[FloatArray, FloatArray, float]]:
+    """Put a clip about its centroids, in units of the diagonal of its rest.
+
+    Parameters
+    ----------
+    frames : (T, n, 3) float
+        Vertices in every frame.
+    rest : (n, 3) float
+        Vertices at rest.
+
+    Returns
+    -------
+    problem : Problem
+        The clip so placed.
+    placement : (3,), (T, 3) and float
+        Centroid at rest, in every frame, and the diagonal.
+
+    Raises
+    ------
+    ValueError
+        If the rest vertices are all at one place.
+    """
+    centre, centres = rest.mean(axis=0), frames.mean(axis=1)
+    scale = float(np.linalg.norm(np.ptp(rest, axis=0)))
+    if not scale > 0:
+        raise ValueError("rest must span some space, got all vertices at one place")
+    problem = Problem.of((rest - centre) / scale, (frames - centres[:, None]) / scale)
+    return problem, (centre, centres, scale)
+
+
+def dense(state: State) -> FloatArray:
+    """Weights as a matrix.
+
+    Parameters
+    ----------
+    state : State
+        B bones, at most K a vertex.
+
+    Returns
+    -------
+    (n, B) ndarray
+        Rows sum to 1.
+    """
+    weights = np.zeros((len(state.bones), state.n_bones))
+    np.add.at(weights, (np.arange(len(weights))[:, None], state.bones), state.weights)
+    return weights
+
+
+def search_part(n: int, rng: np.random.Generator) -> IntArray:
+    """Draw the vertices on which bones are sought.
+
+    Parameters
+    ----------
+    n : int
+        Number of vertices.
+    rng : Generator
+        Draws them.
+
+    Returns
+    -------
+    (k,) ndarray of int
+        At most 1500, ascending.
+    """
+    return np.sort(rng.choice(n, min(n, _SEARCH), replace=False))
 
 
 def _counts(frames: FloatArray, bones: int, influences: int) -> tuple[int, int]:
@@ -145,7 +206,7 @@ def _counts(frames: FloatArray, bones: int, influences: int) -> tuple[int, int]:
 def _search(problem: Problem, B: int, K: int, rng: np.random.Generator, progress: Progress) -> State:
     """Find bones on a part of the vertices, then weights for all."""
     n = len(problem.rest)
-    chosen = np.sort(rng.choice(n, min(n, _SEARCH), replace=False))
+    chosen = search_part(n, rng)
     part = problem.part(chosen)
     progress(0, 3, "searching bones")
     state, explained = grow(part, B, K, rng, _EXACT)

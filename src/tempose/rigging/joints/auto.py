@@ -1,0 +1,97 @@
+"""A skin for anything that moves: bones from the clip, joined, settled on the clip."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tempose.clips import MeshClip, SkinnedMesh
+from tempose.clips.blocks import read_block
+from tempose.metrics import compare
+from tempose.rigging.decomposition import Decomposition, count_bones, decompose
+from tempose.rigging.joints.seams import distinct_vertices
+from tempose.rigging.joints.settle import settle
+from tempose.rigging.joints.skeleton import skeleton_from_bones
+from tempose.typing import FloatArray, Progress, silent
+
+_MOST_FRAMES = 240
+
+
+def auto_skin(
+    clip: MeshClip,
+    bones: int | None = None,
+    *,
+    influences: int = 4,
+    tolerance: float = 3e-3,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> tuple[SkinnedMesh, dict[str, Any]]:
+    """Find a skeleton and weights in the motion of a clip.
+
+    Parameters
+    ----------
+    clip : MeshClip
+        At least two frames in which the mesh moves in itself.
+    bones : int, optional
+        Number of bones; by default as few as bring free bones to `tolerance`.
+    influences : int, default 4
+        Most bones that a vertex may follow.
+    tolerance : float, default 3e-3
+        Root mean square distance, in diagonals of the rest mesh, that sets the number of bones.
+    seed : int, default 0
+        The same seed gives the same answer.
+    progress : Progress
+        Told about every stage.
+
+    Returns
+    -------
+    skin : SkinnedMesh
+        The rest mesh of the clip, joints ``bone_00`` ..., weights.
+    report : dict
+        ``bones``, ``e_rms_free`` of free bones, ``e_rms`` and ``rms_percent`` of the skeleton,
+        ``frames`` looked at, ``warnings``.
+
+    Raises
+    ------
+    ValueError
+        If the clip is still or moves rigidly, or like fewer bones than asked for.
+    """
+    used = np.unique(np.linspace(0, clip.n_frames - 1, min(clip.n_frames, _MOST_FRAMES)).round().astype(int))
+    frames = _frames(clip, used)
+    first, back = distinct_vertices(clip.rest, frames)
+    rest, frames = clip.rest[first], frames[:, first]
+    count = bones if bones is not None else count_bones(frames, rest, tolerance, influences, seed=seed)
+    found = decompose(frames, rest, bones=count, influences=influences, seed=seed, progress=progress)
+    skeleton, weights, motion = skeleton_from_bones(found, fps=clip.fps)
+    settled = settle(rest, skeleton, weights, motion, frames, influences, progress=progress)
+    report = _report(found, settled.vertices, frames)
+    report["frames"] = len(used)
+    skin = SkinnedMesh(clip.mesh, settled.skin.skeleton, settled.skin.weights[back])
+    return skin, report
+
+
+def _frames(clip: MeshClip, used: Any) -> FloatArray:
+    if len(used) < 2:
+        raise ValueError(f"clip must have at least two frames to find bones in, got {clip.n_frames}")
+    blocks = [read_block(clip.vertices, slice(int(t), int(t) + 1), "clip") for t in used]
+    return np.concatenate(blocks).astype(np.float64)
+
+
+def _report(found: Decomposition, vertices: FloatArray, frames: FloatArray) -> dict[str, Any]:
+    D = float(np.linalg.norm(np.ptp(found.rest, axis=0)))
+    free = compare(frames, found.vertices(), D)
+    joined = compare(frames, vertices, D)
+    report: dict[str, Any] = {
+        "bones": found.n_bones,
+        "e_rms_free": free.e_rms,
+        "e_rms": joined.e_rms,
+        "rms_percent": joined.rms_percent,
+        "warnings": [],
+    }
+    if joined.rms > 2 * free.rms + 1e-3 * D:
+        report["warnings"].append(
+            f"joints of constant length cost much: {joined.rms_percent:.2f} % of D where free bones reach "
+            f"{free.rms_percent:.2f} %; the clip slides or stretches, ask for fewer bones"
+        )
+    return report
