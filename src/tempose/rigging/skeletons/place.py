@@ -9,7 +9,8 @@ import numpy as np
 from tempose.clips import Mesh, Skeleton
 from tempose.embedding import Embedding, embed_whole_or_piece
 from tempose.embedding.cells import Cells
-from tempose.kinematics import find_roles, rest_transforms
+from tempose.kinematics import find_roles
+from tempose.rigging.skeletons.bind import joint_bones
 from tempose.rigging.skeletons.human import REFUSED
 from tempose.rigging.skeletons.inside import joints_outside, mesh_cells, share_inside
 from tempose.rigging.skeletons.posed import posed_like
@@ -116,10 +117,10 @@ def _human(mesh: Mesh) -> Embedding | None:
 
 def _boxed(skeleton: Skeleton, mesh: Mesh, cells: Cells, quarter: int) -> Placed:
     turn = from_rotation_vector(np.array([0.0, 0.5 * np.pi * quarter, 0.0]))
-    P = rotate(turn, rest_transforms(skeleton)[1])
+    P = rotate(turn, joint_bones(skeleton)[0].reshape(-1, 3))
     inner = cells.points
     low, high = inner.min(axis=0), inner.max(axis=0)
-    # joints lie inside the surface, by about a twentieth of the height
+    # bones end inside the surface, by about a twentieth of the height
     height = 0.95 * float(high[1] - low[1])
     extent = float(np.ptp(P[:, 1]))
     scale = height / extent if extent > 0 else height / max(float(np.ptp(P, axis=0).max()), 1e-300)
