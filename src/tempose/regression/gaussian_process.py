@@ -18,6 +18,8 @@ class GaussianProcess:
         With noise above zero.
     X : (T, P) float
         Inputs of the observations.
+    vague : (T,) float, optional
+        Noise of single observations, added to that of the kernel.
 
     Raises
     ------
@@ -25,11 +27,11 @@ class GaussianProcess:
         If the covariance of the inputs is singular.
     """
 
-    def __init__(self, kernel: Kernel, X: FloatArray) -> None:
+    def __init__(self, kernel: Kernel, X: FloatArray, vague: FloatArray | None = None) -> None:
         self.kernel = kernel
         self.X: FloatArray = np.asarray(X, dtype=np.float64)
         K = kernel(self.X, self.X)
-        K.flat[:: len(K) + 1] += kernel.noise
+        K.flat[:: len(K) + 1] += kernel.noise if vague is None else kernel.noise + vague
         try:
             self._factor = cho_factor(K, lower=True)
         except np.linalg.LinAlgError:

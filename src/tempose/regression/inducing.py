@@ -23,6 +23,8 @@ class InducingProcess:
         Inputs of the observations.
     inducing : (m, P) float
         Inducing inputs, for instance some rows of `X`. When all rows are taken the process is the dense one.
+    vague : (T,) float, optional
+        Noise of single observations, added to that of the kernel.
 
     Notes
     -----
@@ -35,7 +37,9 @@ class InducingProcess:
        regression", Journal of Machine Learning Research 6, 2005.
     """
 
-    def __init__(self, kernel: Kernel, X: FloatArray, inducing: FloatArray) -> None:
+    def __init__(
+        self, kernel: Kernel, X: FloatArray, inducing: FloatArray, vague: FloatArray | None = None
+    ) -> None:
         self.kernel = kernel
         self.inducing: FloatArray = np.asarray(inducing, dtype=np.float64)
         m = len(self.inducing)
@@ -43,8 +47,9 @@ class InducingProcess:
         K.flat[:: m + 1] += _JITTER * np.trace(K) / m
         self._lower: FloatArray = np.linalg.cholesky(K)
         # whitened by the inducing covariance, all the rest is well conditioned
-        self._seen: FloatArray = solve_triangular(self._lower, kernel(self.inducing, X), lower=True)
-        inner = self._seen @ self._seen.T / kernel.noise
+        seen = solve_triangular(self._lower, kernel(self.inducing, X), lower=True)
+        self._seen: FloatArray = seen / (kernel.noise if vague is None else kernel.noise + vague)
+        inner = self._seen @ seen.T
         inner.flat[:: m + 1] += 1.0
         self._factor = cho_factor(inner, lower=True)
 
@@ -61,7 +66,7 @@ class InducingProcess:
         (Q, T) ndarray
             The predicted output is ``weights @ Y`` for centred outputs Y (T, d).
         """
-        return cho_solve(self._factor, self._whitened(X)).T @ self._seen / self.kernel.noise
+        return cho_solve(self._factor, self._whitened(X)).T @ self._seen
 
     def variance(self, X: FloatArray) -> FloatArray:
         """Variance of a noisy observation of one output, given the T others.
@@ -92,7 +97,7 @@ class InducingProcess:
             What ``k(x, inducing) @ known @ k(inducing, x)`` takes from the variance of the prior.
         """
         unwhiten = solve_triangular(self._lower, np.eye(len(self._lower)), lower=True)
-        weights = unwhiten.T @ cho_solve(self._factor, self._seen) / self.kernel.noise
+        weights = unwhiten.T @ cho_solve(self._factor, self._seen)
         inner = cho_solve(self._factor, unwhiten)
         return weights, unwhiten.T @ (unwhiten - inner)
 

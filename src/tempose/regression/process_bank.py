@@ -23,9 +23,17 @@ class ProcessBank:
         Inputs of the observations.
     inducing : (m,) int, optional
         Rows of `X` through which the others are seen; all where left out.
+    vague : (R, T) float, optional
+        Noise of single observations, added to that of each kernel.
     """
 
-    def __init__(self, kernels: Sequence[Kernel], X: FloatArray, inducing: IntArray | None = None) -> None:
+    def __init__(
+        self,
+        kernels: Sequence[Kernel],
+        X: FloatArray,
+        inducing: IntArray | None = None,
+        vague: FloatArray | None = None,
+    ) -> None:
         self._smooth, self._linear, self._noise = (
             np.array([getattr(k, name) for k in kernels])[:, None, None]
             for name in ("smooth", "linear", "noise")
@@ -35,7 +43,8 @@ class ProcessBank:
         self._compared: FloatArray = (X if inducing is None else X[inducing]) - self._centre
         self._squares: FloatArray = self._precision @ np.square(self._compared).T
         self._offset: FloatArray = self._precision * self._centre
-        made = [_solver(kernel, X, inducing) for kernel in kernels]
+        each = [None] * len(kernels) if vague is None else vague
+        made = [_solver(kernel, X, inducing, extra) for kernel, extra in zip(kernels, each)]
         self._solver: FloatArray = np.array([solver for solver, _ in made])
         self._known: FloatArray = (
             np.array([known for _, known in made]) if inducing is not None else self._solver
@@ -111,9 +120,11 @@ class ProcessBank:
         return alike, self._smooth[:, :, 0] + self._linear[:, :, 0] * whole
 
 
-def _solver(kernel: Kernel, X: FloatArray, inducing: IntArray | None) -> tuple[FloatArray, FloatArray]:
+def _solver(
+    kernel: Kernel, X: FloatArray, inducing: IntArray | None, vague: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
     """Return what similarities are multiplied by: to give weights (m, T), to give what is known (m, m)."""
     if inducing is None:
-        inverse = GaussianProcess(kernel, X).inverse()
+        inverse = GaussianProcess(kernel, X, vague).inverse()
         return inverse, inverse
-    return InducingProcess(kernel, X, X[inducing]).solvers()
+    return InducingProcess(kernel, X, X[inducing], vague).solvers()

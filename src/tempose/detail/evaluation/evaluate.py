@@ -8,8 +8,12 @@ import numpy as np
 from scipy.stats import rankdata
 
 from tempose.detail.evaluation.errors import gram_errors, mixed_residuals
-from tempose.detail.training import Learner, Mixture, Training
+from tempose.detail.learners.features import frame_ages
+from tempose.detail.training import Inputs, Learner, Mixture, Predictor, Training
 from tempose.typing import FloatArray, IntArray
+
+_PAST = 32
+"""Frames before those predicted that learners may look back to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,13 +94,23 @@ def evaluate(
         raise ValueError(f"train and test must not share frames, got {both[0]} in both")
     if (D is None) != (shares is None):
         raise ValueError("D and shares must be given together, got one of them")
-    mixture = learner.fit(training.take(train)).mix(training.inputs.take(test))
+    mixture = _with_past(learner.fit(training.take(train)), training.inputs, test)
     squares = gram_errors(training.grams, mixture.weights, train, test)
     total = squares.sum(axis=1)
     if D is not None and shares is not None and len(mixture.weights) > 1:
         wrong = mixed_residuals(D[train], shares, mixture) - D[test]
         total = np.square(wrong).sum(axis=(1, 2))
     return _evaluation(mixture, squares, total, training.sizes)
+
+
+def _with_past(predictor: Predictor, inputs: Inputs, test: IntArray) -> Mixture:
+    """Predict frames; what came before them is known, as it is when a motion is posed."""
+    ages = frame_ages(inputs.chains)[test]
+    past = test[:, None] - np.minimum(ages[:, None], np.arange(_PAST + 1))
+    frames = np.unique(past)
+    mixture = predictor.mix(inputs.take(frames))
+    rows = np.searchsorted(frames, test)
+    return Mixture(mixture.weights[:, rows], mixture.variance[rows])
 
 
 def _evaluation(mixture: Mixture, squares: FloatArray, total: FloatArray, sizes: FloatArray) -> Evaluation:

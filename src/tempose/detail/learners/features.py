@@ -93,6 +93,30 @@ class Features:
         parts.append(parts[-1].max(initial=-1) + 1 + np.arange(E) // width)
         return np.concatenate(parts)
 
+    def unknown(self, inputs: Inputs) -> FloatArray:
+        """Estimate how far columns are off because a clip is younger than what they look back to.
+
+        Parameters
+        ----------
+        inputs : Inputs
+            T frames.
+
+        Returns
+        -------
+        (T, G) ndarray
+            Expected squared error of every group: what is measured where the clip is old enough.
+        """
+        groups, blocks, ages = self.groups(inputs), self.blocks(inputs), frame_ages(inputs.chains)
+        off = np.zeros((len(inputs), groups.max(initial=-1) + 1))
+        moved = inputs.velocity.reshape(len(inputs), -1) / self.scales[1]
+        for block, lag in enumerate(self.lags, start=1):
+            old = np.flatnonzero(ages >= lag)
+            for age in range(lag if len(old) else 0):
+                apart = np.square(moved[old - lag] - moved[old - age]).mean(axis=0)
+                errors = np.bincount(groups[blocks == block], apart, minlength=off.shape[1])
+                off[ages == age] += errors
+        return off
+
     def blocks(self, inputs: Inputs) -> IntArray:
         """Return the block of every column: angles, velocities of each lag, further inputs.
 
@@ -149,6 +173,23 @@ def past(values: FloatArray, chains: IntArray, lag: int) -> FloatArray:
     (T, ...) ndarray
         Earlier values.
     """
+    ages = frame_ages(chains)
+    return values[np.arange(len(chains)) - np.minimum(ages, lag)]
+
+
+def frame_ages(chains: IntArray) -> IntArray:
+    """Count the frames of the same clip before each.
+
+    Parameters
+    ----------
+    chains : (T,) int
+        Which clip every frame is from.
+
+    Returns
+    -------
+    (T,) ndarray
+        Frames before it.
+    """
     frames = np.arange(len(chains))
-    begins = np.maximum.accumulate(np.where(np.diff(chains, prepend=chains[:1] - 1) != 0, frames, 0))
-    return values[np.maximum(frames - lag, begins)]
+    begins = np.diff(chains, prepend=chains[:1] - 1) != 0
+    return frames - np.maximum.accumulate(np.where(begins, frames, 0))

@@ -28,20 +28,26 @@ class KernelPredictor:
     variances lack, metres squared."""
     inducing: int = 0
     """At most so many frames are compared with; 0 for all."""
+    vague: FloatArray | None = None
+    """(R or 1, T) noise of frames whose past is not known whole, added to that of the kernels."""
     bank: ProcessBank | None = field(init=False)
     """Of the kernels that there are, made from the rest; None where there are none."""
 
     def __post_init__(self) -> None:
-        alive = [kernel for kernel in self.kernels if kernel is not None]
+        alive = [r for r, kernel in enumerate(self.kernels) if kernel is not None]
         object.__setattr__(self, "bank", self._bank(alive) if alive else None)
 
-    def _bank(self, alive: Sequence[Kernel]) -> ProcessBank:
+    def _bank(self, alive: list[int]) -> ProcessBank:
+        kernels = [kernel for kernel in self.kernels if kernel is not None]
+        vague = None if self.vague is None else self.vague[alive]
         if not 0 < self.inducing < len(self.X):
-            return ProcessBank(alive, self.X)
-        smooth, linear = (float(np.mean([getattr(k, part) for k in alive])) for part in ("smooth", "linear"))
-        precision = np.exp(np.mean([np.log(k.precision) for k in alive], axis=0))
-        usual = Kernel(smooth, linear, alive[0].noise, precision, alive[0].groups)
-        return ProcessBank(alive, self.X, choose_inducing(usual, self.X, self.inducing))
+            return ProcessBank(kernels, self.X, None, vague)
+        smooth, linear = (
+            float(np.mean([getattr(k, part) for k in kernels])) for part in ("smooth", "linear")
+        )
+        precision = np.exp(np.mean([np.log(k.precision) for k in kernels], axis=0))
+        usual = Kernel(smooth, linear, kernels[0].noise, precision, kernels[0].groups)
+        return ProcessBank(kernels, self.X, choose_inducing(usual, self.X, self.inducing), vague)
 
     def mix(self, inputs: Inputs) -> Mixture:
         """Predict the residuals of some frames.
@@ -56,15 +62,11 @@ class KernelPredictor:
         Mixture
             Weights of the training frames, variances.
         """
-        X = self.features(inputs)
-        R = len(self.kernels)
+        R, Q, T = len(self.kernels), len(inputs), len(self.X)
         alive = [r for r in range(R) if self.kernels[r] is not None]
-        if self.bank is not None and len(alive) == R:
-            weights, variance = self.bank.query(X)
-        else:
-            weights, variance = np.zeros((R, len(X), len(self.X))), np.ones((R, len(X)))
-            if self.bank is not None:
-                weights[alive], variance[alive] = self.bank.query(X)
+        weights, variance = np.zeros((R, Q, T)), np.ones((R, Q))
+        if self.bank is not None:
+            weights[alive], variance[alive] = self.bank.query(self.features(inputs))
         return Mixture(weights, variance.T * self.spreads)
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.detail.learners.calibration import variance_factor
-from tempose.detail.learners.features import Features
+from tempose.detail.learners.features import Features, frame_ages
 from tempose.detail.learners.kernel_predictor import KernelPredictor, spread_frames, unit_grams
-from tempose.detail.training import Training
+from tempose.detail.training import Inputs, Training
 from tempose.regression import GroupDistances, Kernel, fit_kernel, one_blas_thread
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
@@ -22,8 +22,8 @@ class RegionalGaussianProcess:
     for velocities; a prior keeps their scales near it unless the residuals say otherwise.
     """
 
-    lags: tuple[int, ...] = (0,)
-    """Frames back at which velocities are seen."""
+    lags: tuple[int, ...] = (0, 2, 4, 6, 9, 12)
+    """Frames back at which velocities are seen, ascending: cloth that swings remembers that much at 30 Hz."""
     prior: float = 0.5
     """Weight of the squared distance of logarithmic scales from those of the whole body."""
     iterations: int = 8
@@ -57,20 +57,28 @@ class RegionalGaussianProcess:
         kernels: list[Kernel | None] = [None] * len(grams)
         if len(X) < 3 or not spreads.any():
             return KernelPredictor(features, kernels, X, spreads)
-        some = spread_frames(len(X), self.judged)
+        known = self._known_past(inputs)
+        some = known[spread_frames(len(known), self.judged)]
         seen, S = X[some], grams[:, some[:, None], some]
         whole = np.einsum("r,rij->ij", spreads * training.sizes, S)
         with one_blas_thread():
             start = _whole_body(seen, groups, blocks, whole * len(some) / np.trace(whole))
+            unknown, vague = features.unknown(inputs), np.zeros((len(grams), len(X)))
             factors, distances = np.ones(len(grams)), GroupDistances(seen, groups)
             for r in np.flatnonzero(spreads):
                 fit = fit_kernel(
                     distances, groups, S[r], starts=[start], prior=self.prior, iterations=self.iterations
                 )
                 kernels[r] = fit.kernel
+                vague[r] = _vagueness(fit.kernel, unknown)
                 factors[r] = variance_factor(fit.kernel, seen, S[r], inputs.chains[some])
                 self.progress(int(r) + 1, len(grams), "regions")
-        return KernelPredictor(features, kernels, X, factors * spreads, self.inducing)
+        return KernelPredictor(features, kernels, X, factors * spreads, self.inducing, vague)
+
+    def _known_past(self, inputs: Inputs) -> IntArray:
+        """Frames whose earlier velocities are all known, unless too few would be left."""
+        known = np.flatnonzero(frame_ages(inputs.chains) >= self.lags[-1])
+        return known if len(known) >= max(3, len(inputs) // 2) else np.arange(len(inputs))
 
 
 def _whole_body(X: FloatArray, groups: IntArray, blocks: IntArray, S: FloatArray) -> Kernel:
@@ -80,3 +88,9 @@ def _whole_body(X: FloatArray, groups: IntArray, blocks: IntArray, S: FloatArray
     block_of = np.zeros(groups.max() + 1, dtype=np.int64)
     block_of[groups] = columns
     return Kernel(kernel.smooth, kernel.linear, kernel.noise, kernel.precision[block_of], groups)
+
+
+def _vagueness(kernel: Kernel, unknown: FloatArray) -> FloatArray:
+    """Variance of outputs between inputs so far apart as (T, G) squared distances have it."""
+    apart = unknown @ kernel.precision
+    return kernel.smooth * (1.0 - np.exp(-0.5 * apart)) + kernel.linear * apart
