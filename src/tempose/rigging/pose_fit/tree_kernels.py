@@ -109,7 +109,7 @@ def damped_step(H: FloatArray, g: FloatArray, damping: float, L: FloatArray, ste
     Parameters
     ----------
     H : (N, N) float
-        Symmetric; lower triangle read.
+        Symmetric; lower triangle read; the last three are the root's translation.
     g : (N,) float
         Gradient.
     damping : float
@@ -126,17 +126,19 @@ def damped_step(H: FloatArray, g: FloatArray, damping: float, L: FloatArray, ste
     """
     N = len(g)
     mean = 0.0
+    for i in range(N - 3):
+        mean += H[i, i] / (N - 3)
     for i in range(N):
-        mean += H[i, i] / N
-    for i in range(N):
+        # turns and the translation have different units
+        least = mean if i < N - 3 else H[i, i]
         for j in range(i + 1):
             total = H[i, j]
             if i == j:
-                total += damping * H[i, i] + 1e-10 * mean
+                total += damping * H[i, i] + 1e-10 * least
             for k in range(j):
                 total -= L[i, k] * L[j, k]
             if i == j:
-                if total < 1e-13 * mean:
+                if total < 1e-13 * least:
                     return -1.0
                 L[i, i] = np.sqrt(total)
             else:

@@ -53,8 +53,8 @@ def refine_joints(
     rounds : int, default 3
         Alternations of joints and poses.
     pull : float, default 1e-3
-        Holds a joint where it is, as a mean squared turn (radians) about it would; what the clip does not
-        tell, such as a place along the axis of a hinge, stays.
+        Holds a joint where it was given, as a mean squared turn (radians) about it would; what the clip does
+        not tell, such as a place along the axis of a hinge, stays.
     progress : Progress
         Told about every round.
 
@@ -81,8 +81,9 @@ def refine_joints(
     fps = 30.0 if motion is None else motion.fps
     fit = fit_moments(made, seen, fps=fps)
     rms = [_rms(fit)]
+    first = rest_transforms(skin.skeleton)[1]
     for k in range(rounds):
-        joints = solve_joints(made, seen, fit.motion, pull)
+        joints = solve_joints(made, seen, fit.motion, pull, first)
         other = with_joints(made.skin, joints)
         again = made.bound_to(other)
         better = fit_moments(again, seen, fps=fps)
@@ -91,8 +92,8 @@ def refine_joints(
             break
         made, fit = again, better
         rms.append(_rms(fit))
-    before, after = (rest_transforms(s.skeleton)[1] for s in (skin, made.skin))
-    return JointRefinement(made.skin, fit, np.array(rms), np.linalg.norm(after - before, axis=1))
+    moved = np.linalg.norm(rest_transforms(made.skin.skeleton)[1] - first, axis=1)
+    return JointRefinement(made.skin, fit, np.array(rms), moved)
 
 
 def _rms(fit: PoseFit) -> float:
@@ -100,7 +101,11 @@ def _rms(fit: PoseFit) -> float:
 
 
 def solve_joints(
-    made: SkinMoments, seen: FrameMoments, motion: SkeletonClip, pull: float = _PULL
+    made: SkinMoments,
+    seen: FrameMoments,
+    motion: SkeletonClip,
+    pull: float = _PULL,
+    toward: FloatArray | None = None,
 ) -> FloatArray:
     """Solve for the joints that suit given turns.
 
@@ -114,6 +119,8 @@ def solve_joints(
         T frames; only rotations are used.
     pull : float, default 1e-3
         As in `refine_joints`.
+    toward : (J, 3) float, optional
+        Where the pull goes, metres; by default where the joints are.
 
     Returns
     -------
@@ -122,7 +129,7 @@ def solve_joints(
     """
     skeleton = made.skin.skeleton
     J, T = skeleton.n_joints, len(seen)
-    old = rest_transforms(skeleton)[1] - made.centre
+    old = (rest_transforms(skeleton)[1] if toward is None else toward) - made.centre
     turns, _ = bone_transforms(skeleton, motion.rotations, motion.root_position)
     R = to_matrix(turns)
     below = subtrees(skeleton)
