@@ -66,6 +66,7 @@ def test_a_rig_is_a_skeleton_for_the_next_fit(run: Run, job: Path) -> None:
     assert_allclose(Rig.load("out/2.tempose").vertices(), Rig.load("out/r.tempose").vertices(), atol=1e-4)
 
 
+@pytest.mark.slow
 def test_pictures_and_json(run: Run, job: Path) -> None:
     ran = run(*FIT, "skin.glb", "--plot", "out/plots", "--json", "--stop", 4)
     assert ran.code == 0, ran.err
@@ -140,6 +141,7 @@ def test_bones_need_motion(run: Run, job: Path) -> None:
     assert "still.obj" in line and "2 frames" in line
 
 
+@pytest.mark.slow
 def test_what_is_no_person_is_doubted(run: Run, job: Path) -> None:
     """A tube has no limbs: an error, or a warning with a measure, and the way out."""
     ran = run("rig", "fit", "clip.npz", "-o", "out/r.tempose", "--report", "out/r.json")

@@ -106,9 +106,8 @@ def _load_motion(
     try:
         found = matched_motion(model.rig_.skin.skeleton, motion, mapping, missing="rest" if rest else "error")
     except ValueError as error:
-        raise ValueError(
-            f"{path}: {error}; --map takes a file of them, --missing-rest leaves them at rest"
-        ) from None
+        way = "" if mapping else "; --map takes a file of them, --missing-rest leaves joints at rest"
+        raise ValueError(f"{path}: {error}{way}") from None
     for warning in found.warnings:
         note(f"note: {warning}")
     return found.motion, list(found.warnings)
