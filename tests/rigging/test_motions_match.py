@@ -1,4 +1,4 @@
-"""A motion keeps its poses when it goes to another skeleton, whatever that one's rest, bases, names and size."""
+"""A motion keeps its poses on another skeleton, whatever that one's rest, bases, names and size."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def test_a_mapping_wins_and_is_checked(tmp_path):
     (tmp_path / "map.json").write_text('{"joint_0": "hips"}')
     assert read_mapping(tmp_path / "map.json") == {"joint_0": "hips"}
     (tmp_path / "map.json").write_text('{"joint_0": 3}')
-    with pytest.raises(ValueError, match="map.json: expected the name"):
+    with pytest.raises(ValueError, match=r"map\.json: expected the name"):
         read_mapping(tmp_path / "map.json")
 
 
