@@ -199,6 +199,7 @@ def test_a_mesh_that_encloses_nothing_is_refused() -> None:
     ("arguments", "message"),
     [
         ({"skeleton": "auto"}, "needs a clip of at least 2 frames"),
+        ({"skeleton": "auto", "frame": 2}, "frame is for other skeletons than 'auto'"),
         ({"bones": 5}, "bones is for skeleton 'auto'"),
         ({"blending": "cubic"}, "got 'cubic'"),
         ({"frame": 3}, "frame must be from 0 to 0, got 3"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import asdict
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
 from tempose.clips.blocks import read_block
 from tempose.metrics import compare
+from tempose.rigging.joints import auto_skin
 from tempose.rigging.pose_fit import fit_poses
 from tempose.rigging.refine import refine_joints
 from tempose.rigging.rig import Blending, Rig
@@ -71,7 +71,7 @@ def fit_rig(
         If an argument is wrong, the mesh is no human where one was asked for, or the skeleton lies outside
         the mesh; the message names the measure and what to do.
     """
-    _check(clip, skeleton, bones, blending)
+    _check(clip, skeleton, bones, frame, blending)
     moving = clip if isinstance(clip, MeshClip) else MeshClip(clip.vertices[None], clip, source=clip.source)
     clock = _Clock()
     bound = _bound(moving, skeleton, bones, frame, progress)
@@ -108,7 +108,7 @@ def rest_clip(skeleton: Skeleton) -> SkeletonClip:
     return SkeletonClip(skeleton, skeleton.rest_rotations[None], skeleton.offsets[:1])
 
 
-def _check(clip: Any, skeleton: Any, bones: int | None, blending: str) -> None:
+def _check(clip: Any, skeleton: Any, bones: int | None, frame: int | None, blending: str) -> None:
     if not isinstance(clip, MeshClip | Mesh):
         raise ValueError(f"clip must be a MeshClip or a Mesh, got {type(clip).__name__}")
     if isinstance(clip, MeshClip) and clip.n_frames == 0:
@@ -117,6 +117,10 @@ def _check(clip: Any, skeleton: Any, bones: int | None, blending: str) -> None:
         raise ValueError(f"blending must be 'linear' or 'dual-quaternion', got {blending!r}")
     if bones is not None and skeleton != "auto":
         raise ValueError("bones is for skeleton 'auto'; every other skeleton has its own number of joints")
+    if frame is not None and skeleton == "auto":
+        raise ValueError(
+            "frame is for other skeletons than 'auto', whose bind pose is the rest mesh of the clip"
+        )
     if skeleton == "auto" and (isinstance(clip, Mesh) or clip.n_frames < 2):
         raise ValueError(
             "skeleton 'auto' finds bones from motion and needs a clip of at least 2 frames; "
@@ -130,8 +134,7 @@ def _bound(
     if isinstance(skeleton, str) and skeleton == "human":
         return surest_human(clip, frame, progress)
     if isinstance(skeleton, str) and skeleton == "auto":
-        skin, facts = import_module("tempose.rigging.joints").auto_skin(clip, bones=bones)
-        facts = dict(facts)
+        skin, facts = auto_skin(clip, bones, progress=progress)
         return Bound(skin, facts, tuple(facts.pop("warnings", ())))
     mesh = clip.mesh if frame is None else frame_mesh(clip, frame)
     if isinstance(skeleton, str | os.PathLike):
