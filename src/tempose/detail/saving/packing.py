@@ -29,7 +29,7 @@ def pack(array: Any) -> tuple[ByteArray, dict[str, Any]]:
     how : dict
         What `unpack` needs beside them, as JSON can hold it.
     """
-    array = np.ascontiguousarray(array)
+    array = np.asarray(array)
     how: dict[str, Any] = {"type": array.dtype.str, "shape": list(array.shape)}
     stored = _shorter(array)
     if stored.dtype.kind in "iu" and stored.ndim == 2 and len(stored) > 1:
@@ -39,7 +39,7 @@ def pack(array: Any) -> tuple[ByteArray, dict[str, Any]]:
         stored = _folded(stored)
         how["folded"] = True
     how["stored"] = stored.dtype.str
-    planes = stored.reshape(-1).view(np.uint8).reshape(-1, stored.dtype.itemsize).T
+    planes = np.ascontiguousarray(stored).reshape(-1).view(np.uint8).reshape(-1, stored.dtype.itemsize).T
     return np.frombuffer(zlib.compress(planes.tobytes(), 9), np.uint8), how
 
 
@@ -90,7 +90,8 @@ def unpack(packed: Any, how: dict[str, Any]) -> Any:
 def _shorter(array: Any) -> Any:
     """Return the same numbers in the shortest type."""
     if array.dtype == np.float64:
-        short = array.astype(np.float32)
+        with np.errstate(over="ignore"):  # what float32 cannot hold is kept as it is
+            short = array.astype(np.float32)
         return short if np.array_equal(short, array, equal_nan=True) else array
     if array.dtype.kind in "iu" and array.size:
         low, high = int(array.min()), int(array.max())
