@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from tempose.clips import SkeletonClip
+from tempose.clips import SkeletonClip, SkinnedMesh
 from tempose.formats import FormatError, save, save_skin
 from tempose.kinematics import linear_blend_skinning
+from tempose.rigging.few_weights import few_weights
 from tempose.rigging.rig import Rig
-from tempose.typing import FloatArray, Progress, silent
+from tempose.typing import Progress, silent
 
 _SKINS = (".glb", ".usda", ".usdc", ".usd")
 _MOST_GLTF_WEIGHTS = 4
@@ -70,8 +71,9 @@ def export_rig(
 
     Notes
     -----
-    GLB holds at most four weights a vertex and blends linearly; the difference this makes is measured over
-    the frames, at most 32 of them. USD holds all weights and says how they blend.
+    GLB holds at most four weights a vertex (see `tempose.rigging.few_weights`) and blends linearly; the
+    difference this makes is measured over the frames, at most 32 of them. USD holds all weights and says how
+    they blend.
     """
     motion = motion or rig.motion
     if motion.skeleton.names != rig.skin.skeleton.names:
@@ -83,36 +85,28 @@ def export_rig(
         return Exported(motion.n_frames, 0.0, ())
     if suffix not in _SKINS:
         raise FormatError(f"{place}: a rig goes into .bvh, {', '.join(_SKINS)}, got {suffix or 'no ending'}")
-    save_skin(place, rig.skin, motion, blending=rig.blending, up=up, unit=unit, progress=progress)
+    skin = few_weights(rig.skin, motion) if suffix == ".glb" else rig.skin
+    save_skin(place, skin, motion, blending=rig.blending, up=up, unit=unit, progress=progress)
     if suffix != ".glb":
         return Exported(motion.n_frames, 0.0, ())
-    return _compare(rig, motion)
+    return _compare(rig, skin, motion)
 
 
-def _compare(rig: Rig, motion: SkeletonClip) -> Exported:
-    """Pose the linear skin of four weights and measure how far it is off."""
-    weights, warnings = _fewer(rig.skin.weights), list[str]()
+def _compare(rig: Rig, skin: SkinnedMesh, motion: SkeletonClip) -> Exported:
+    """Pose the linear skin of few weights and measure how far it is off."""
     many = int((np.count_nonzero(rig.skin.weights, axis=1) > _MOST_GLTF_WEIGHTS).sum())
     if not many and rig.blending == "linear":
         return Exported(motion.n_frames, 0.0, ())
     chosen = np.unique(np.linspace(0, motion.n_frames - 1, _CHECKED).round().astype(int))
     some = motion.frames(chosen)
-    skin = replace(rig.skin, weights=weights)
     V = linear_blend_skinning(skin, some.rotations, some.root_position, some.skeleton)
-    off = np.linalg.norm(V - rig.vertices(some), axis=2).max()
-    percent = float(100 * off / (rig.skin.mesh.diagonal or 1.0))
+    off = np.linalg.norm(V - rig.vertices(some), axis=2)
+    size = rig.skin.mesh.diagonal or 1.0
+    largest, rms = float(100 * off.max() / size), float(100 * np.sqrt((off**2).mean()) / size)
+    warnings: list[str] = []
     if many:
-        warnings.append(f"{many} vertices have more than four weights; a GLB keeps the four largest.")
+        warnings.append(f"{many} vertices follow more than four joints; a GLB binds them to the best four.")
     if rig.blending != "linear":
         warnings.append("A GLB blends linearly, the rig by dual quaternions: joints that twist look thinner.")
-    warnings.append(f"Vertices are off by up to {percent:.2g} % of the size of the mesh.")
-    return Exported(motion.n_frames, percent, tuple(warnings))
-
-
-def _fewer(weights: FloatArray) -> FloatArray:
-    kept = np.array(weights)
-    if weights.shape[1] > _MOST_GLTF_WEIGHTS:
-        weakest = np.argsort(-weights, axis=1, kind="stable")[:, _MOST_GLTF_WEIGHTS:]
-        np.put_along_axis(kept, weakest, 0.0, axis=1)
-    sums = kept.sum(axis=1, keepdims=True)
-    return kept * np.divide(weights.sum(axis=1, keepdims=True), sums, out=np.ones_like(sums), where=sums > 0)
+    warnings.append(f"Vertices are off by {rms:.2g} % of the size of the mesh, at most {largest:.2g} %.")
+    return Exported(motion.n_frames, largest, tuple(warnings))
