@@ -16,6 +16,7 @@ from tempose.typing import FloatArray, IntArray, Progress, silent
 
 _EXACT = 1e-6  # rms distance, in diagonals, below which a clip counts as explained: float32 files reach 1e-7
 _SEARCH = 1500  # vertices on which bones are sought; the whole mesh then settles them
+_FEW = 4  # influences while bones are sought: with more of them a bone may lie far from all that it moves
 
 
 @dataclass(frozen=True)
@@ -209,7 +210,8 @@ def _search(problem: Problem, B: int, K: int, rng: np.random.Generator, progress
     chosen = search_part(n, rng)
     part = problem.part(chosen)
     progress(0, 3, "searching bones")
-    state, explained = grow(part, B, K, rng, _EXACT)
+    few = min(K, _FEW)
+    state, explained = grow(part, B, few, rng, _EXACT)
     if explained:
         raise ValueError(_too_many(B, state.n_bones))
     progress(1, 3, "searching bones")
@@ -218,7 +220,7 @@ def _search(problem: Problem, B: int, K: int, rng: np.random.Generator, progress
     progress(2, 3, "searching bones")
     alternate(part, state, 10, 1e-3)
     whole = State(state.motions, np.zeros((n, K), np.int64), np.zeros((n, K)), np.zeros(n))
-    whole.bones[chosen], whole.weights[chosen] = state.bones, state.weights
+    whole.bones[chosen, :few], whole.weights[chosen, :few] = state.bones, state.weights
     weight_step(problem, whole)
     progress(3, 3, "searching bones")
     return whole

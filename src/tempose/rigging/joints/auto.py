@@ -11,7 +11,7 @@ from tempose.clips.blocks import read_block
 from tempose.metrics import compare
 from tempose.rigging.decomposition import Decomposition, count_bones, decompose
 from tempose.rigging.joints.seams import distinct_vertices
-from tempose.rigging.joints.settle import settle
+from tempose.rigging.joints.settling import settle
 from tempose.rigging.joints.skeleton import skeleton_from_bones
 from tempose.typing import FloatArray, Progress, silent
 

@@ -10,7 +10,7 @@ from tempose.rigging.decomposition import Decomposition
 from tempose.rotations import to_matrix
 from tempose.typing import FloatArray
 
-_PULL = 1e-2
+_WEAK = 0.15  # of the strongest: turns about an axis below it say little about the place along it
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ def pair_joints(bones: Decomposition) -> PairJoints:
     Notes
     -----
     Least squares over all frames of ``R_a c + t_a = R_b c + t_b``. Bones that turn about one axis only, or
-    not at all, leave the joint open: a pull of weight 0.01 (a mean squared turn in radians) towards the
-    region that both hold settles it. Two bones that share no vertex have the middle between their nearest
+    not at all, leave the joint open: along directions that the turns hardly tell, it stays in the middle of
+    the region that both hold. Two bones that share no vertex have the middle between their nearest
     vertices in its place.
     """
     R, t = to_matrix(bones.rotations), bones.translations
@@ -54,12 +54,20 @@ def pair_joints(bones: Decomposition) -> PairJoints:
     places, apart = np.zeros((B, B, 3)), np.zeros((B, B))
     for a in range(B):
         D, d = R[:, a, None] - R, t[:, a, None] - t
-        N = np.einsum("tbki,tbkj->bij", D, D) / len(R) + _PULL * np.eye(3)
-        right = _PULL * middles[a] - np.einsum("tbki,tbk->bi", D, d) / len(R)
-        places[a] = np.linalg.solve(N, right[..., None])[..., 0]
+        N = np.einsum("tbki,tbkj->bij", D, D) / len(R)
+        off = np.einsum("tbki,tbk->bi", D, d) / len(R) + np.einsum("bij,bj->bi", N, middles[a])
+        places[a] = middles[a] - _filtered(N, off)
         tear = np.einsum("tbki,bi->tbk", D, places[a]) + d
         apart[a] = np.sqrt((tear**2).sum(axis=2).mean(axis=0))
     return PairJoints(places, apart, np.linalg.norm(places - middles, axis=2), shared)
+
+
+def _filtered(N: FloatArray, off: FloatArray) -> FloatArray:
+    """Solve ``N x = off`` with directions faded out that N holds weakly."""
+    values, axes = np.linalg.eigh(N)
+    floor = _WEAK * values[..., -1:] + 1e-6  # turns of less than a milliradian are noise
+    part = np.einsum("bji,bj->bi", axes, off) * values / (values**2 + floor**2)
+    return np.einsum("bij,bj->bi", axes, part)
 
 
 def _middles(bones: Decomposition, shared: FloatArray) -> FloatArray:

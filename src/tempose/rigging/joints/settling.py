@@ -13,6 +13,8 @@ from tempose.rigging.decomposition import weights_for
 from tempose.rigging.refine import refine_joints
 from tempose.typing import FloatArray, Progress, silent
 
+_PULL = 0.2  # mean squared turn: much above the usual, since free joints wander out along hinges
+
 
 @dataclass(frozen=True, eq=False)
 class Settled:
@@ -39,7 +41,7 @@ def settle(
     frames: FloatArray,
     influences: int = 4,
     *,
-    rounds: int = 4,
+    rounds: int = 10,
     progress: Progress = silent,
 ) -> Settled:
     """Move joints, fit poses and solve weights in turn.
@@ -58,8 +60,9 @@ def settle(
         Positions to reach, metres.
     influences : int, default 4
         Most bones that a vertex may follow.
-    rounds : int, default 4
-        How often weights are solved again; the first round that helps no more is undone and ends it.
+    rounds : int, default 10
+        How often weights are solved again; a round that lowers the error by less than 1 % is the
+        last.
     progress : Progress
         Told about every round.
 
@@ -81,11 +84,13 @@ def settle(
             break
         best = trial
         history.append(rms)
+        if rms > 0.99 * history[-2]:
+            break
     return Settled(*best, np.array(history))
 
 
 def _joined(skin: SkinnedMesh, motion: SkeletonClip, frames: FloatArray) -> tuple[SkinnedMesh, SkeletonClip]:
-    refined = refine_joints(skin, motion, frames)
+    refined = refine_joints(skin, motion, frames, pull=_PULL)
     return refined.skin, refined.fit.motion
 
 
