@@ -1,9 +1,9 @@
-"""`tempose convert`: a clip in another format, at another rate, in another unit."""
+"""`tempose convert`: a clip or a motion in another format, at another rate, in another unit."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import tempose
 from tempose.cli import options as given
@@ -11,8 +11,10 @@ from tempose.cli.console import note, progress_bar, writing
 from tempose.cli.options import check_out, load
 
 if TYPE_CHECKING:
-    from tempose.clips import Mesh, MeshClip
+    from tempose.clips import Mesh, MeshClip, SkeletonClip
     from tempose.typing import Progress
+
+Moving = TypeVar("Moving", "MeshClip", "SkeletonClip")
 
 
 def convert(  # numpydoc ignore=PR01
@@ -33,7 +35,7 @@ def convert(  # numpydoc ignore=PR01
     from_fps: given.FromFps = None,
 ) -> None:
     """Write a mesh or a clip in another format, rate, unit or up axis."""
-    check_out(out)
+    check_out(out, motion=True)
     loaded = load(
         source,
         up=from_up,
@@ -43,12 +45,10 @@ def convert(  # numpydoc ignore=PR01
         clip=clip,
         topology=topology,
     )
-    if isinstance(loaded, tempose.SkeletonClip):
-        raise ValueError(
-            f"{source}: holds a skeleton's motion, and no format for that can be written yet; "
-            "`tempose transfer` puts it on a mesh"
-        )
+    _check_kind(source, loaded, out)
     if isinstance(loaded, tempose.MeshClip):
+        loaded = _retimed(loaded, fps, start, stop, step)
+    elif isinstance(loaded, tempose.SkeletonClip):
         loaded = _retimed(loaded, fps, start, stop, step)
     elif any(value is not None for value in (fps, start, stop, step)):
         raise ValueError(f"{source}: is still, so --fps, --start, --stop and --step do not apply")
@@ -62,6 +62,17 @@ def convert(  # numpydoc ignore=PR01
     note(f"wrote {out}: {_size(loaded)}")
 
 
+def _check_kind(source: str, loaded: Mesh | MeshClip | SkeletonClip, out: Path) -> None:
+    """Refuse meshes in a BVH, and motions anywhere else."""
+    moves, takes = isinstance(loaded, tempose.SkeletonClip), out.suffix.lower() == ".bvh"
+    if moves and not takes:
+        raise ValueError(
+            f"{source}: holds a skeleton's motion, which goes into .bvh; `tempose transfer` puts it on a mesh"
+        )
+    if takes and not moves:
+        raise ValueError(f"{out}: a BVH holds the motion of a skeleton, {source} is a mesh")
+
+
 def _write_compact(out: Path, thing: Mesh | MeshClip, tolerance: float, progress: Progress) -> None:
     from tempose.formats.glb import write
 
@@ -69,8 +80,8 @@ def _write_compact(out: Path, thing: Mesh | MeshClip, tolerance: float, progress
 
 
 def _retimed(
-    clip: MeshClip, fps: float | None, start: int | None, stop: int | None, step: int | None
-) -> MeshClip:
+    clip: Moving, fps: float | None, start: int | None, stop: int | None, step: int | None
+) -> Moving:
     from dataclasses import replace
 
     from tempose.clips.resample import resample, select_frames
@@ -81,7 +92,9 @@ def _retimed(
     return clip if fps is None else resample(clip, fps)
 
 
-def _size(thing: Mesh | MeshClip) -> str:
+def _size(thing: Mesh | MeshClip | SkeletonClip) -> str:
+    if isinstance(thing, tempose.SkeletonClip):
+        return f"{thing.n_frames} frames at {thing.fps:.6g} fps, {thing.skeleton.n_joints} joints"
     if isinstance(thing, tempose.MeshClip):
         return f"{thing.n_frames} frames at {thing.fps:.6g} fps, {len(thing.rest)} vertices"
     return f"{len(thing.vertices)} vertices"

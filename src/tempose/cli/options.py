@@ -83,13 +83,15 @@ def load(path: str, **options: Any) -> Mesh | MeshClip | SkeletonClip:
     return loaded
 
 
-def check_out(path: Path) -> None:
+def check_out(path: Path, *, motion: bool = False) -> None:
     """Refuse an output that cannot be written before the work is done that makes it.
 
     Parameters
     ----------
     path : Path
         Where a clip shall go.
+    motion : bool, default False
+        Whether it may be the motion of a skeleton.
 
     Raises
     ------
@@ -98,10 +100,11 @@ def check_out(path: Path) -> None:
     FileNotFoundError
         If its folder does not exist.
     """
-    formats = tempose.formats.FORMATS
+    wanted = {"mesh", "clip"} | ({"skeleton"} if motion else set[str]())
+    formats = {k: f for k, f in tempose.formats.FORMATS.items() if f.writes and wanted.intersection(f.reads)}
     suffix = path.suffix.lower()
-    if suffix and not (suffix in formats and formats[suffix].writes):
-        known = ", ".join(name for name, kind in formats.items() if kind.writes)
+    if suffix and suffix not in formats:
+        known = ", ".join(formats)
         raise ValueError(f"{path}: cannot write {suffix!r}; known are {known}")
     folder = path.parent
     if not folder.is_dir() and not (folder.parent.is_dir() and "#" in path.name):
