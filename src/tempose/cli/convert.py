@@ -55,7 +55,7 @@ def convert(  # numpydoc ignore=PR01
     if tolerance is not None and out.suffix.lower() != ".glb":
         raise ValueError(f"{out}: --tolerance is for .glb")
     with progress_bar() as progress, writing(out):
-        if tolerance is None:
+        if tolerance is None or isinstance(loaded, tempose.SkeletonClip):
             tempose.save(out, loaded, up=up, unit=unit, progress=progress)
         else:
             _write_compact(out, loaded, tolerance, progress)
