@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import tempose
-from tempose.cli import demo, demo_cases, demo_signals
+from tempose.cli import demo, demo_cases, demo_detail, demo_signals
 from tempose.signals.pictures import thumbnails
 
 Run = Callable[..., Any]
@@ -31,7 +31,11 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in (("_CELL", 24), ("_MOMENTS", 2), ("_FILM", (24, 24))):
         monkeypatch.setattr(demo, name, value)
         monkeypatch.setattr(demo_signals, name, value)
+        if name != "_FILM":
+            monkeypatch.setattr(demo_detail, name, value)
     monkeypatch.setattr(demo_signals, "TRIANGLES", 2000)
+    monkeypatch.setattr(demo_detail, "TRIANGLES", 2000)
+    monkeypatch.setattr(demo_detail, "SECONDS", 0.6)
     monkeypatch.setattr(thumbnails, "FINE", 1)
 
 
@@ -41,6 +45,10 @@ def test_demo_writes_everything_it_promises(run: Run, tmp_path: Path, small: Non
     assert ran.code == 0, ran.err
     names = {path.name for path in out.iterdir()}
     assert names == {
+        "detail.glb",
+        "detail.png",
+        "detail.tempose",
+        "detail_heldout.svg",
         "human_run.glb",
         "human_run.png",
         "human_walk.glb",

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tempose
+from tempose.cli.demo_detail import detail_section
 from tempose.cli.demo_signals import signals_section
 
 if TYPE_CHECKING:
@@ -79,7 +80,10 @@ def table_row(name: str, report: dict[str, Any]) -> list[Any]:
 
 
 def write_page(
-    folder: Path, reports: Sequence[dict[str, Any]], signals: dict[str, Any] | None = None
+    folder: Path,
+    reports: Sequence[dict[str, Any]],
+    signals: dict[str, Any] | None = None,
+    detail: dict[str, Any] | None = None,
 ) -> None:
     """Write ``report.html``, which opens without a network.
 
@@ -91,17 +95,21 @@ def write_page(
         Of the transfers, in the order in which they are shown.
     signals : dict, optional
         Of the clip that became a curve.
+    detail : dict, optional
+        Of the skirt that follows a skeleton.
     """
     render = tempose.render
     sections = [render.Section("Overview", [_INTRO, _table(reports)])] if reports else []
     sections += [_section(folder, report) for report in reports]
     if signals is not None:
         sections.append(signals_section(folder, signals))
+    if detail is not None:
+        sections.append(detail_section(folder, detail))
     render.html_report(
         "Tempose demo",
         sections,
         folder / "report.html",
-        subtitle=f"motion onto still meshes, clips as curves; Tempose {tempose.__version__}",
+        subtitle=f"motion for still meshes, clips as curves, skirts that follow; Tempose {tempose.__version__}",
     )
 
 
