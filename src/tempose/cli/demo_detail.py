@@ -42,8 +42,8 @@ HEADER = (
 
 LEGEND = (
     "Errors are rms, percent of the diagonal. skin off: the skeleton with its skin alone, on frames that "
-    "were learned from; mean: with a constant correction; with detail: with what was learned. on the new walk: "
-    "a speed that was never seen, with detail, and with the skin alone."
+    "were learned from; mean: with a constant correction; with detail: with what was learned. on the new "
+    "walk: a speed that was never seen, with detail, and with the skin alone."
 )
 
 _ABOUT = """\

@@ -109,7 +109,7 @@ def write_page(
         "Tempose demo",
         sections,
         folder / "report.html",
-        subtitle=f"motion for still meshes, clips as curves, skirts that follow; Tempose {tempose.__version__}",
+        subtitle=f"motion for meshes, clips as curves, a skirt that follows; Tempose {tempose.__version__}",
     )
 
 

@@ -18,7 +18,7 @@ _LARGEST = 32767
 
 @dataclass(frozen=True, eq=False)
 class CoarseBasis:
-    """Modes at K control vertices, the mean at all n: it costs as one mode and holds every fold that stays."""
+    """Modes at K control vertices, the mean at all n: it costs one mode and holds every fold that stays."""
 
     basis: DetailBasis
     """Modes at the control vertices."""
