@@ -5,6 +5,7 @@ follow one another smoothly. Nothing here knows vertices: residuals enter by the
 """
 
 from tempose.detail.gplvm.back_map import BackMap, fit_back_map
+from tempose.detail.gplvm.calibration import Widening, widen_variances
 from tempose.detail.gplvm.grams import centred_gram, gram_factor, unit_gram
 from tempose.detail.gplvm.objective import SharedObjective
 from tempose.detail.gplvm.plane import LatentPlane, latent_plane
@@ -17,6 +18,7 @@ __all__ = [
     "LatentPlane",
     "LatentProcess",
     "SharedObjective",
+    "Widening",
     "centred_gram",
     "fit_back_map",
     "gram_factor",
@@ -24,4 +26,5 @@ __all__ = [
     "latent_start",
     "train_latent",
     "unit_gram",
+    "widen_variances",
 ]

@@ -13,79 +13,75 @@ times as much."""
 
 
 @njit(cache=True)
-def rbf_matrix(inner: FloatArray, variance: float, rate: float) -> FloatArray:  # pragma: no cover
-    """Lower triangle of ``variance exp(-rate |x_i - x_j|^2 / 2)``, the rest zero.
+def fill_covariance(
+    inner: FloatArray, hyper: FloatArray, P: FloatArray, K: FloatArray
+) -> None:  # pragma: no cover
+    """Write the lower triangle of ``a exp(-g |x_i - x_j|^2 / 2) + c x_i . x_j + s [i = j]``.
 
     Parameters
     ----------
     inner : (T, T) float
         Inner products of the points.
-    variance, rate : float
-        Of the kernel.
-
-    Returns
-    -------
-    (T, T) ndarray
-        Lower triangle and diagonal.
+    hyper : (4,) float
+        a, g, s and c.
+    P : (T, T) float
+        Receives the radial part.
+    K : (T, T) float
+        Receives all of it.
     """
-    T = len(inner)
-    P = np.zeros((T, T))
-    for i in range(T):
+    a, g, s, c = hyper
+    for i in range(len(inner)):
         for j in range(i):
-            exponent = 0.5 * rate * max(inner[i, i] + inner[j, j] - 2.0 * inner[i, j], 0.0)
-            if exponent < _NOTHING:
-                P[i, j] = variance * np.exp(-exponent)
-        P[i, i] = variance
-    return P
+            exponent = 0.5 * g * max(inner[i, i] + inner[j, j] - 2.0 * inner[i, j], 0.0)
+            P[i, j] = a * np.exp(-exponent) if exponent < _NOTHING else 0.0
+            K[i, j] = P[i, j] + c * inner[i, j]
+        P[i, i] = a
+        K[i, i] = a + c * inner[i, i] + s
 
 
 @njit(cache=True)
-def rbf_slopes(
+def fill_slopes(
     inner: FloatArray, P: FloatArray, inverse: FloatArray, explained: FloatArray, scale: float
-) -> tuple[FloatArray, FloatArray, float, float]:  # pragma: no cover
-    """Find what every gradient of one likelihood needs, from lower triangles.
+) -> tuple[float, float, float]:  # pragma: no cover
+    """Turn lower triangles into what every gradient of one likelihood needs.
 
     Parameters
     ----------
     inner : (T, T) float
         Inner products of the points.
     P : (T, T) float
-        Lower triangle of the radial part of the kernel.
+        Radial part of the covariance K; becomes itself times the slope of the likelihood in K, elementwise.
     inverse : (T, T) float
-        Lower triangle of the inverse of the whole kernel.
+        Inverse of K; becomes the slope of the negative log likelihood in K.
     explained : (T, T) float
-        Lower triangle of ``inverse Y Y^T inverse / D``.
+        ``inverse Y Y^T inverse``, over the number of outputs.
     scale : float
         Weight of the likelihood.
 
     Returns
     -------
-    E : (T, T) ndarray
-        Slope of the negative log likelihood in the kernel, symmetric.
-    W : (T, T) ndarray
-        ``E`` times the radial part, elementwise.
     total : float
-        Sum of `W`.
+        Sum over the whole of what `P` becomes.
     spread : float
-        Sum of `W` times the squared distances.
+        The same times the squared distances of the points.
+    trace : float
+        Of the slope in K.
     """
-    T = len(inner)
-    E, W = np.zeros((T, T)), np.zeros((T, T))
-    total, spread = 0.0, 0.0
-    for i in range(T):
-        for j in range(i + 1):
+    total, spread, trace = 0.0, 0.0, 0.0
+    for i in range(len(inner)):
+        for j in range(i):
             e = 0.5 * scale * (inverse[i, j] - explained[i, j])
             w = e * P[i, j]
-            E[i, j] = e
-            E[j, i] = e
-            W[i, j] = w
-            W[j, i] = w
-            if i == j:
-                total += w
-            else:
-                total += 2.0 * w
-                spread += 2.0 * w * (inner[i, i] + inner[j, j] - 2.0 * inner[i, j])
-    return E, W, total, spread
+            inverse[i, j] = e
+            P[i, j] = w
+            total += 2.0 * w
+            spread += 2.0 * w * (inner[i, i] + inner[j, j] - 2.0 * inner[i, j])
+        e = 0.5 * scale * (inverse[i, i] - explained[i, i])
+        inverse[i, i] = e
+        P[i, i] *= e
+        total += P[i, i]
+        trace += e
+    return total, spread, trace
 
 
 @njit(cache=True)

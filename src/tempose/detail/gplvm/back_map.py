@@ -22,6 +22,8 @@ class BackMap:
     """(T, q) their latent points."""
     mean: FloatArray
     """(P,) mean pose."""
+    widening: float = 1.0
+    """Factor on the variance, see `widen_variances`."""
     process: GaussianProcess = field(init=False)
     """Made from the rest."""
 
@@ -48,10 +50,12 @@ class BackMap:
         points = centre + self.process.weights(Y) @ (self.X - centre)
         spread = float(np.mean((self.X - centre) ** 2))
         unsure = np.maximum(self.process.variance(Y) - self.kernel.noise, 0.0)
-        return points, spread * unsure
+        return points, self.widening * spread * unsure
 
 
-def fit_back_map(Y: FloatArray, groups: IntArray, X: FloatArray, iterations: int = 60) -> BackMap:
+def fit_back_map(
+    Y: FloatArray, groups: IntArray, X: FloatArray, iterations: int = 30, judged: int = 160
+) -> BackMap:
     """Learn where in the latent space a pose lies.
 
     Parameters
@@ -62,8 +66,10 @@ def fit_back_map(Y: FloatArray, groups: IntArray, X: FloatArray, iterations: int
         Group of every column; the columns of a group share a length scale.
     X : (T, q) float
         Latent points.
-    iterations : int, default 60
+    iterations : int, default 30
         Largest number of steps from each start.
+    judged : int, default 160
+        At most so many frames, spread evenly, judge kernels.
 
     Returns
     -------
@@ -72,7 +78,8 @@ def fit_back_map(Y: FloatArray, groups: IntArray, X: FloatArray, iterations: int
     """
     mean = Y.mean(axis=0)
     centred = X - X.mean(axis=0)
-    variance = max(float(np.mean(centred**2)), 1e-300)
-    S = centred @ centred.T / (variance * X.shape[1])
-    kernel = fit_kernel(Y - mean, groups, S, iterations=iterations).kernel
+    some = np.unique(np.linspace(0, len(X) - 1, min(len(X), judged)).round().astype(np.int64))
+    seen = centred[some]
+    S = seen @ seen.T / max(float(np.mean(seen**2)) * X.shape[1], 1e-300)
+    kernel = fit_kernel((Y - mean)[some], groups, S, iterations=iterations).kernel
     return BackMap(kernel, Y - mean, X, mean)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from tempose.detail.gplvm.likelihood import negative_log_likelihood
+from tempose.detail.gplvm.likelihood import LatentLikelihood
 from tempose.typing import FloatArray, IntArray
 
 HYPER = (3, 3, 4)
@@ -33,6 +33,13 @@ class SharedObjective:
     """Weights of the three likelihoods: their dimensions for the product itself, 1, 1, 1 / q for balance."""
     dim: int
     """Latent dimensions q."""
+    likelihoods: tuple[LatentLikelihood, LatentLikelihood, LatentLikelihood] = field(init=False)
+    """Where each of them is worked out; made from the rest."""
+
+    def __post_init__(self) -> None:
+        sizes = [Z.shape for Z in (self.skeleton, self.detail)] + [(len(self.before), self.dim)]
+        pose, detail, path = (LatentLikelihood(n, r) for n, r in sizes)
+        object.__setattr__(self, "likelihoods", (pose, detail, path))
 
     def split(self, theta: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
         """Part a vector of all unknowns.
@@ -68,12 +75,13 @@ class SharedObjective:
             Its gradient.
         """
         X, hyper = self.split(theta)
-        pose = negative_log_likelihood(X, self.skeleton, hyper[0], self.scales[0])
-        detail = negative_log_likelihood(X, self.detail, hyper[1], self.scales[1])
+        of_pose, of_detail, of_path = self.likelihoods
+        pose = of_pose(X, self.skeleton, hyper[0], self.scales[0])
+        detail = of_detail(X, self.detail, hyper[1], self.scales[1])
         value, slope = pose.value + detail.value, pose.points + detail.points
         rates = [pose.hyper, detail.hyper, np.zeros(HYPER[2])]
         if len(self.before):
-            path = negative_log_likelihood(X[self.before], X[self.before + 1], hyper[2], self.scales[2])
+            path = of_path(X[self.before], np.asfortranarray(X[self.before + 1]), hyper[2], self.scales[2])
             value += path.value
             rates[2] = path.hyper
             slope[self.before] += path.points

@@ -98,9 +98,8 @@ def train_latent(
     T, q = start.shape
     same = np.diff(chains) == 0
     first = np.concatenate([[0], np.flatnonzero(~same) + 1])
-    objective = SharedObjective(
-        gram_factor(skeleton), gram_factor(detail), np.flatnonzero(same), first, scales, q
-    )
+    factors = [np.asfortranarray(gram_factor(gram)) for gram in (skeleton, detail)]
+    objective = SharedObjective(factors[0], factors[1], np.flatnonzero(same), first, scales, q)
     theta = np.concatenate([start.ravel(), _START, _START, _DYNAMICS])
     noise = (np.log(noise_floor), _MOST_NOISE)
     bounds = [(None, None)] * (T * q) + 2 * [_LOOSE, _LOOSE, noise] + [_LOOSE, _LOOSE, noise, _LOOSE]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,16 +15,20 @@ from tempose.detail.gplvm import (
     latent_start,
     train_latent,
     unit_gram,
+    widen_variances,
 )
-from tempose.detail.learners.features import Features, TwoFrames
+from tempose.detail.learners.features import TwoFrames
 from tempose.detail.learners.kernel_predictor import spread_frames
-from tempose.detail.learners.latent_predictor import LatentPredictor, Scaled, TrainingFrames
+from tempose.detail.learners.latent_predictor import LatentPredictor, Poses, TrainingFrames
+from tempose.detail.learners.scaled_poses import ScaledPoses
 from tempose.detail.training import Inputs, Training
 from tempose.regression import one_blas_thread
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
 FEWEST = 3
 """Frames below which there is nothing to learn: the mean is predicted."""
+_STILL = 1e-14
+"""Variance of angles, square radians, or of residuals, as part of their mean square, that is rounding."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +38,8 @@ class LatentLearner:
     Poses and residuals are Gaussian processes over one latent point a frame, and every latent point is one
     over the point before. The default differs from the paper, each time for a measured reason: 16 latent
     dimensions for 4, likelihoods divided by their dimensions so that 30 000 vertex coordinates do not drown
-    the rest, a start from poses and residuals together, angles and velocities at variances of their own, and
-    a prediction that knows how unsure the latent point is. `paper` has the paper's setting.
+    the rest, a start from poses and residuals together, joints that count by how much residuals depend on
+    them, and a prediction that knows how unsure the latent point is. `paper` has the paper's setting.
 
     Notes
     -----
@@ -54,8 +58,9 @@ class LatentLearner:
     """Whether each likelihood is divided by its dimension; otherwise their plain product is maximised."""
     start: Literal["poses", "residuals", "both"] = "both"
     """Whose principal components the latent points begin with."""
-    momentum: float | None = 0.5
-    """Weight of velocities beside angles, both at variance 1; None for the angles of two frames, unscaled."""
+    scaled: bool = True
+    """Whether every joint counts by how much residuals depend on it; otherwise the angles of two frames are
+    taken as they are."""
     expected: bool = True
     """Whether the variance of the latent point enters mean and variance of the prediction."""
     iterations: int = 100
@@ -77,7 +82,7 @@ class LatentLearner:
             Four latent dimensions, the product of the likelihoods, a start from the poses of two frames, 100
             iterations, and the output variance alone.
         """
-        return cls(dim=4, balanced=False, start="poses", momentum=None, expected=False, name="gplvm-paper")
+        return cls(dim=4, balanced=False, start="poses", scaled=False, expected=False, name="gplvm-paper")
 
     def fit(self, training: Training) -> LatentPredictor:
         """Learn from T frames.
@@ -102,28 +107,36 @@ class LatentLearner:
         T = len(training.inputs)
         frames = spread_frames(T, self.judged)
         inputs = rows_of(training.inputs, frames)
-        features, Y, groups = self._poses(inputs)
-        poses, moved = unit_gram(centred_gram(Y))
         residuals, variance = unit_gram(
             _centred(training.gram)[np.ix_(frames, frames)] / training.sizes.sum()
         )
+        residuals = _short(residuals)
         basis = TrainingFrames(frames, T, variance, self._notes(T, len(frames)))
-        if len(frames) < FEWEST or not moved or not variance:
-            return LatentPredictor(features, basis, None, None, self.expected)
+        _, moved = unit_gram(centred_gram(TwoFrames()(inputs)))
+        still = moved <= _STILL or variance * T * training.sizes.sum() <= _STILL * np.trace(training.gram)
+        if len(frames) < FEWEST or still:
+            return LatentPredictor(TwoFrames(), basis, None, None, self.expected)
         with one_blas_thread():
+            features, Y, groups = self._poses(inputs, residuals)
+            Y = _short(Y)
+            poses, _ = unit_gram(centred_gram(Y))
             fit = self._train(poses, residuals, inputs.chains, (Y.shape[1], float(training.sizes.sum())))
             back = fit_back_map(Y, groups, fit.X)
             process = LatentProcess(fit.X, fit.detail, residuals)
+            if self.expected:
+                wider = widen_variances(back, process, inputs.chains)
+                back = replace(back, widening=wider.points)
+                basis = replace(basis, variance=wider.residuals * variance)
         return LatentPredictor(features, basis, back, process, self.expected)
 
-    def _poses(self, inputs: Inputs) -> tuple[Features | TwoFrames | Scaled, FloatArray, IntArray]:
+    def _poses(self, inputs: Inputs, residuals: FloatArray) -> tuple[Poses, FloatArray, IntArray]:
         """Columns that stand for a pose and the group of each."""
-        if self.momentum is None:
+        if not self.scaled:
             two = TwoFrames()
             Y = two(inputs)
             return two, Y, np.zeros(Y.shape[1], dtype=np.int64)
-        scaled = Scaled(Features.of(inputs), self.momentum)
-        return scaled, scaled(inputs), scaled.groups(inputs)
+        columns = ScaledPoses.of(inputs, residuals)
+        return columns, columns(inputs), columns.blocks(inputs)
 
     def _train(
         self, poses: FloatArray, residuals: FloatArray, chains: IntArray, sizes: tuple[float, float]
@@ -153,6 +166,11 @@ class LatentLearner:
         if frames < T:
             notes.append(f"{self.name}: {frames} of {T} frames, spread evenly, are learned from")
         return tuple(notes)
+
+
+def _short(values: FloatArray) -> FloatArray:
+    """Round to float32: what a file keeps of a model is then half as long."""
+    return values.astype(np.float32).astype(np.float64)
 
 
 def _centred(gram: FloatArray) -> FloatArray:

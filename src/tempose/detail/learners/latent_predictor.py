@@ -3,53 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from tempose.detail.gplvm import BackMap, LatentPlane, LatentProcess, latent_plane
-from tempose.detail.learners.features import Features, TwoFrames
+from tempose.detail.learners.features import TwoFrames
+from tempose.detail.learners.scaled_poses import ScaledPoses
 from tempose.detail.training import Inputs, Mixture
 from tempose.typing import FloatArray, IntArray
 
-
-@dataclass(frozen=True, eq=False)
-class Scaled:
-    """Angles and velocities as columns, velocities at a lower weight."""
-
-    features: Features
-    """Columns, each block at variance 1."""
-    momentum: float
-    """Weight of velocities beside angles."""
-
-    def __call__(self, inputs: Inputs) -> FloatArray:
-        """Return the columns of some frames.
-
-        Parameters
-        ----------
-        inputs : Inputs
-            Q frames.
-
-        Returns
-        -------
-        (Q, P) ndarray
-            Columns.
-        """
-        return self.features(inputs) * np.where(self.features.blocks(inputs) == 1, self.momentum, 1.0)
-
-    def groups(self, inputs: Inputs) -> IntArray:
-        """Return the group of every column: angles, velocities, further inputs.
-
-        Parameters
-        ----------
-        inputs : Inputs
-            Q frames.
-
-        Returns
-        -------
-        (P,) ndarray
-            Groups from 0.
-        """
-        return np.unique(self.features.blocks(inputs), return_inverse=True)[1]
+Poses: TypeAlias = TwoFrames | ScaledPoses
+"""What makes columns of inputs."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +26,8 @@ class TrainingFrames:
     n_frames: int
     """Frames T of the training."""
     variance: float
-    """Variance of one coordinate of the residuals over those frames, metres squared."""
+    """Variance of one coordinate of the residuals over those frames, times what blocks left out say that
+    predicted variances lack, metres squared."""
     warnings: tuple[str, ...] = ()
     """Sentences for the report."""
 
@@ -70,7 +36,7 @@ class TrainingFrames:
 class LatentPredictor:
     """A trained latent model: poses are placed in the latent space, residuals read off there."""
 
-    features: Features | TwoFrames | Scaled
+    features: Poses
     """Columns that stand for a pose."""
     basis: TrainingFrames
     """What it was made from."""
