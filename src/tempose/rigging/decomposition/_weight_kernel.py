@@ -97,13 +97,65 @@ def convex_weights(E: FloatArray, S: IntArray, k: int, w: FloatArray, L: FloatAr
 
 
 @njit(cache=True)
+def _inverse(E: FloatArray, S: IntArray, P: FloatArray) -> None:
+    """Write the inverse of E on the bones of S (plus a hair on the diagonal) into P, by Gauss and Jordan."""
+    K = len(S)
+    ridge = 1e-300
+    for a in range(K):
+        ridge += 1e-12 * E[S[a], S[a]]
+    for a in range(K):
+        for b in range(K):
+            P[a, b] = E[S[a], S[b]]
+        P[a, a] += ridge
+    for a in range(K):
+        pivot = P[a, a] if P[a, a] > ridge else ridge
+        P[a, a] = 1.0
+        for c in range(K):
+            P[a, c] /= pivot
+        for b in range(K):
+            if b != a:
+                factor = P[b, a]
+                P[b, a] = 0.0
+                for c in range(K):
+                    P[b, c] -= factor * P[a, c]
+
+
+@njit(cache=True)
+def _swap_bounds(E: FloatArray, S: IntArray, P: FloatArray, j: int, z: FloatArray, bound: FloatArray) -> None:
+    """Write, for each place of S, the least energy that j in that place could reach with free signs.
+
+    The inverse of E on S and j follows from P by bordering; leaving a bone out of it is a rank-one change.
+    """
+    K = len(S)
+    schur, rest, total = E[j, j] * (1 + 1e-12), 1.0, 0.0
+    for a in range(K):
+        z[a] = 0.0
+        for b in range(K):
+            z[a] += P[a, b] * E[S[b], j]
+            total += P[a, b]
+        schur -= z[a] * E[S[a], j]
+        rest -= z[a]
+    schur = max(schur, 1e-12 * E[j, j] + 1e-300)
+    total += rest * rest / schur
+    for a in range(K):
+        row = -z[a] * rest / schur
+        for b in range(K):
+            row += P[a, b]
+        without = total - row * row / (P[a, a] + z[a] * z[a] / schur)
+        bound[a] = 1.0 / without if without > 0 else 0.0
+
+
+@njit(cache=True)
 def _swap(
     E: FloatArray, S: IntArray, k: int, w: FloatArray, j: int, energy: float, spare: IntArray, F: FloatArray
 ) -> tuple[int, float]:
     """Put bone j in the place of the bone where that helps most; edits S and w if it helps at all."""
     K = len(S)
     best, place = energy * (1 - 1e-9), -1
+    _swap_bounds(E, S, F[K + 2 :], j, F[K + 1], F[2 * K + 2])
     for out in range(k):
+        if F[2 * K + 2, out] >= best:
+            continue
         for a in range(k):
             spare[a], F[K, a] = S[a], w[a]
         spare[out] = j
@@ -132,7 +184,7 @@ def choose_bones(
         Bones and weights, edited.
     k : int
         How many of them are in use, at least one.
-    g, spare, F : (B,), (K,), (K + 2, K)
+    g, spare, F : (B,), (K,), (2 K + 3, K)
         Scratch.
 
     Returns
@@ -151,6 +203,8 @@ def choose_bones(
     energy = mixing_energy(E, S, k, w)
     for _ in range(4 * K):
         before = energy
+        if k == K:
+            _inverse(E, S, F[K + 2 : 2 * K + 2])
         for j in range(B):
             g[j] = 0.0
             for a in range(k):
@@ -197,7 +251,7 @@ def weights_of_block(
     """
     m, B = own.shape
     K = bones.shape[1]
-    E, g, F = np.zeros((B, B)), np.zeros(B), np.zeros((K + 2, K))
+    E, g, F = np.zeros((B, B)), np.zeros(B), np.zeros((2 * K + 3, K))
     S, spare, w = np.zeros(K, np.int64), np.zeros(K, np.int64), np.zeros(K)
     left = np.zeros(m)
     for i in range(m):
