@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.testing import assert_allclose
 
 from tempose.clips import MeshClip, SkeletonClip
 from tempose.clips.resample import resample
-from tempose.detail import DetailModel, residuals
+from tempose.detail import DetailModel, motion_inputs, residuals
 from tempose.detail.evaluation import mixed_residuals
 from tempose.detail.learners import PlainGaussianProcess
 from tempose.rotations import from_rotation_vector
@@ -64,7 +65,7 @@ def test_the_lean_rig_is_the_rig(model, rig, motion) -> None:
 def test_posing_is_the_mixture_of_residuals_vertex_by_vertex(model, rig, motion, clip) -> None:
     other = resample(motion, 60.0).frames(slice(1, 40, 2))
     D = residuals(model.rig_, model.motions_[0], clip.vertices)
-    mixture = model.predictor_.mix(model._inputs(other))
+    mixture = model.predictor_.mix(motion_inputs(other, 30.0, model.mean_angles))
     slow = mixed_residuals(D, model.shares_, mixture)
     assert rms(model.residual(other), slow) < 0.05 / 100 * clip.mesh.diagonal
     back = residuals(model.rig_, other, model.pose(other).vertices)
@@ -165,7 +166,7 @@ def test_motions_are_found_where_none_are_given(rig, motion, clip) -> None:
 
 def test_noise_is_left_to_the_mean(rig, motion, rng) -> None:
     V = rig.vertices(motion)[:40] + 0.01 * rng.normal(size=(40, 240, 3))
-    model = DetailModel(folds=4).fit(MeshClip(V, rig.skin.mesh), rig, [motion.frames(slice(0, 40))])
+    model = DetailModel(folds=3).fit(MeshClip(V, rig.skin.mesh), rig, [motion.frames(slice(0, 40))])
     assert model.report_["learner"] == "mean"
     assert "mean" in model.report_["why"]
     assert any("strength 0" in w for w in model.report_["warnings"])
@@ -227,3 +228,43 @@ def test_options_out_of_range_are_refused(options, message, rig, clip, motion) -
 def test_truth_of_these_tests_is_what_the_model_is_told(rig, motion, clip) -> None:
     D = residuals(rig, motion, clip.vertices)
     assert_allclose(D, hanging(rig, motion), atol=1e-6)
+
+
+@pytest.fixture(scope="module")
+def remembering(rig, motion, clip):
+    """A learner that looks back twelve frames."""
+    return DetailModel("regional-gp", folds=0).fit(clip, rig, [motion])
+
+
+@pytest.mark.parametrize("factor", [2, 3])
+def test_memories_are_of_the_frames_of_the_training(factor: int, remembering, motion) -> None:
+    dense = remembering.pose(resample(motion, 30.0 * factor)).vertices
+    assert_allclose(dense[factor::factor], remembering.pose(motion).vertices[1:], atol=2e-6)
+
+
+@pytest.mark.parametrize(("fps", "step", "others"), [(15.0, 1, 2), (24.0, 4, 5), (45.0, 3, 2), (50.0, 5, 3)])
+def test_any_rate_shows_the_same_detail(fps: float, step: int, others: int, remembering, motion) -> None:
+    found = remembering.residual(resample(motion, fps))[::step]
+    truth = remembering.residual(motion)[::others][: len(found)]
+    late = math.ceil(13 / others)
+    # frames at another rate know less of the motion between them
+    assert rms(found[late:], truth[late:]) < 0.12 * rms(truth, truth.mean(axis=0))
+
+
+@pytest.mark.parametrize("factor", [1, 2])
+def test_live_frames_remember_as_batches_do(factor: int, remembering, rig) -> None:
+    other = resample(swing(rig, 30, seed=2), 30.0 * factor)
+    batch, live = remembering.pose(other).vertices, remembering.live(30.0 * factor)
+    frames = [np.array(live.pose(q, p)) for q, p in zip(other.rotations, other.root_position)]
+    # the first knows nothing of how it moves, and is looked back at for twelve frames of the training
+    late = 14 * factor
+    assert_allclose(frames[late:], batch[late:], atol=2e-6)
+
+
+def test_clips_of_other_rates_are_brought_to_that_of_the_first(rig) -> None:
+    motions = [swing(rig, 30), resample(swing(rig, 30, seed=1), 60.0)]
+    clips = [clothed(rig, motions[0]), clothed(rig, motions[1])]
+    model = DetailModel("gp", folds=0).fit(clips, rig, motions)
+    assert model.report_["frames"] == 60
+    assert [m.fps for m in model.motions_] == [30.0, 30.0]
+    assert_allclose(model.motions_[1].rotations, motions[1].rotations[::2], atol=1e-6)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from tempose.clips import MeshClip, SkeletonClip
+from tempose.clips.resample import resample
 from tempose.detail.basis import DetailBasis, compress
 from tempose.detail.inputs import joined_inputs, motion_inputs
 from tempose.detail.multiresolution import CoarseBasis, ControlMesh, coarse_basis, make_control
@@ -104,13 +104,38 @@ def gather(
     return Gathered(lean, fitted, shares, D, learned, training, detail, coarse, seconds)
 
 
+def at_one_rate(
+    clips: Sequence[MeshClip], motions: Sequence[SkeletonClip] | None
+) -> tuple[list[MeshClip], list[SkeletonClip] | None]:
+    """Give all clips the rate of the first, since learners count time in frames.
+
+    Parameters
+    ----------
+    clips : sequence of MeshClip
+        At any rates.
+    motions : sequence of SkeletonClip, optional
+        Of every clip.
+
+    Returns
+    -------
+    clips : list of MeshClip
+        Those of other rates with frames between their frames.
+    motions : list of SkeletonClip or None
+        Likewise.
+    """
+    fps = clips[0].fps
+    # the clip states the rate: a motion that was written at another one still has a frame for each of its
+    moving = None if motions is None else [replace(m, fps=c.fps) for m, c in zip(motions, clips)]
+    return [resample(c, fps) for c in clips], None if moving is None else [resample(m, fps) for m in moving]
+
+
 def training_inputs(motions: Sequence[SkeletonClip]) -> Inputs:
-    """Read the motions that are learned from, velocities at the rate of the first.
+    """Read the motions that are learned from.
 
     Parameters
     ----------
     motions : sequence of SkeletonClip
-        At least one.
+        At least one, of the same rate.
 
     Returns
     -------
@@ -167,42 +192,3 @@ class _Clock:
         now = time.perf_counter()
         self._seconds[stage] = now - self._last
         self._last = now
-
-
-def rig_inputs(rig: Rig, motion: SkeletonClip, fps: float, near: FloatArray) -> Inputs:
-    """Read a motion that is to be posed.
-
-    Parameters
-    ----------
-    rig : Rig
-        Whose joints it must move.
-    motion : SkeletonClip
-        T frames.
-    fps : float
-        Rate of the training.
-    near : (K, 3) float
-        Mean rotation vectors of the training.
-
-    Returns
-    -------
-    Inputs
-        T frames.
-
-    Raises
-    ------
-    ValueError
-        If it moves other joints or has no frames.
-    """
-    names: Any = rig.skin.skeleton.names
-    if motion.skeleton.names != names:
-        odd = [name for name in motion.skeleton.names if name not in names]
-        what = (
-            f"unknown {odd[0]!r}" if odd else f"{len(motion.skeleton.names)} of {len(names)} in their order"
-        )
-        raise ValueError(
-            f"motion must move the joints of the rig, {', '.join(names[:3])}..., got {what}; "
-            "tempose.rigging.motions.match_motion brings other skeletons onto them"
-        )
-    if motion.n_frames == 0:
-        raise ValueError("motion must have one frame or more, got none")
-    return motion_inputs(motion, fps, near)

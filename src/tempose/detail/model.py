@@ -15,12 +15,13 @@ from tempose.clips import MeshClip, SkeletonClip
 from tempose.detail.basis import DetailBasis
 from tempose.detail.checks import check_clips, check_options
 from tempose.detail.edits import damped, region_strengths, size_ratio, vertex_mask
-from tempose.detail.fitting import gather, rig_inputs, training_inputs
+from tempose.detail.fitting import at_one_rate, gather, training_inputs
 from tempose.detail.learners import LEARNERS
 from tempose.detail.multiresolution import CoarseBasis
 from tempose.detail.posing import DetailPoser
 from tempose.detail.posing.live import LivePoser
 from tempose.detail.prediction import coefficients, nearest_distances, usual_distance, variances
+from tempose.detail.query import Query, make_query
 from tempose.detail.report import fit_report, held_out
 from tempose.detail.residuals import Basis
 from tempose.detail.saving.model_file import read_detail_model, write_detail_model
@@ -126,6 +127,7 @@ class DetailModel:
         check_options(self, LEARNERS)
         clips = [clips] if isinstance(clips, MeshClip) else list(clips)
         check_clips(clips, rig, motions)
+        clips, motions = at_one_rate(clips, motions)
         gathered = gather(clips, rig, motions, self.basis, self.tolerance, self.resolution, progress)
         training, seconds = gathered.training, dict(gathered.seconds)
         start = time.perf_counter()
@@ -208,7 +210,8 @@ class DetailModel:
         (T, R, 1 + K) float32 ndarray
             Of the mean and of K modes in every region, metres.
         """
-        return coefficients(self.predictor_, self.detail_, self._inputs(motion), len(self.regions))
+        query = self._query(motion)
+        return query.frames(coefficients(self.predictor_, self.detail_, query.inputs, len(self.regions)))
 
     def residual(self, motion: SkeletonClip | None = None) -> FloatArray:
         """Predict residuals.
@@ -260,7 +263,8 @@ class DetailModel:
         (T, R) ndarray
             Variance of one coordinate, metres squared.
         """
-        return variances(self.predictor_, self._inputs(motion), len(self.regions))
+        query = self._query(motion)
+        return query.frames(variances(self.predictor_, query.inputs, len(self.regions)))
 
     def far(self, motion: SkeletonClip | None = None) -> FloatArray:
         """Measure how far poses are from those learned.
@@ -276,7 +280,8 @@ class DetailModel:
             Angle to the most alike pose of the training, over that which 95 % of its own poses have to one at
             another time; above 1 detail is a guess.
         """
-        angle = nearest_distances(self._inputs(motion), self._learned)
+        query = self._query(motion)
+        angle = query.frames(nearest_distances(query.inputs, self._learned))
         return angle / max(self._usual, np.radians(1.0))
 
     def live(self, fps: float | None = None) -> LivePoser:
@@ -360,9 +365,8 @@ class DetailModel:
         self._usual = usual_distance(inputs)
         self._poser = DetailPoser(self.rig_, self.detail_, self.shares_, self.basis)
 
-    def _inputs(self, motion: SkeletonClip | None) -> Inputs:
-        motion = self._motion(motion)
-        return rig_inputs(self.rig_, motion, self.motions_[0].fps, self._near)
+    def _query(self, motion: SkeletonClip | None) -> Query:
+        return make_query(self.rig_, self._motion(motion), self.motions_[0].fps, self._near)
 
     def _motion(self, motion: SkeletonClip | None) -> SkeletonClip:
         self._fitted()

@@ -20,7 +20,7 @@ def joint_rows(
     turns: FloatArray,
     shifts: FloatArray,
 ) -> None:
-    """Turns and shifts of one frame, as `joint_turns` has them.
+    """Turn and shift the joints of one frame, as `joint_turns` does.
 
     Parameters
     ----------

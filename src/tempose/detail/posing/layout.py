@@ -61,7 +61,7 @@ class Layout:
 
 @dataclass(frozen=True, eq=False)
 class BlockWeights:
-    """Rows of weights, of every block only the columns that are not zero there, filled up to fours by zeros."""
+    """Rows of weights: of every block the columns that are not zero there, filled up to fours."""
 
     starts: IntArray
     """(b + 1,) int32, where the columns of each block begin."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -39,8 +40,8 @@ class LivePoser:
 
     Notes
     -----
-    Equal to `DetailModel.pose` of the same frames, but for the first: nothing is known of how it moves, so its
-    velocity is zero.
+    Equal to `DetailModel.pose` of the same frames, but for the first: nothing is known of how it moves, so
+    its velocity is zero.
     """
 
     def __init__(self, model: DetailModel, fps: float | None = None) -> None:
@@ -113,16 +114,34 @@ class LivePoser:
 
     def _remember(self, rotations: FloatArray) -> None:
         angles = np.zeros_like(self._near)
-        before = self._angles[-1] if self._angles else None
-        rotation_vectors(self._rest_back, rotations, self._near if before is None else before, angles)
-        self._velocity.append(np.zeros_like(angles) if before is None else (angles - before) * self._pace)
+        before = self._angles[-1] if self._angles else self._near
+        rotation_vectors(self._rest_back, rotations, before, angles)
         self._angles.append(angles)
-        del self._angles[: -self._memory], self._velocity[: -self._memory]
+        self._velocity.append(self._change())
+        keep = math.ceil(self._memory * self._pace) + 1
+        del self._angles[:-keep], self._velocity[:-keep]
+
+    def _change(self) -> FloatArray:
+        """Change of the angles over a frame of the training, as far as frames before are known."""
+        known = len(self._angles) - 1
+        if known == 0:
+            return np.zeros_like(self._near)
+        reach = min(self._pace, float(known))
+        whole = math.floor(reach + 1e-6)
+        part = max(reach - whole, 0.0)
+        earlier = self._angles[-1 - whole]
+        if part > 1e-6:
+            earlier = (1 - part) * earlier + part * self._angles[-2 - whole]
+        return (self._angles[-1] - earlier) * (self._pace / reach)
 
     def _inputs(self) -> Inputs:
-        Q = len(self._angles)
-        none, chain = np.zeros((Q, 0)), np.zeros(Q, dtype=np.int64)
-        return Inputs(np.stack(self._angles), np.stack(self._velocity), none, chain, self._names)
+        """Return the latest frame and those that learners look back at, a frame of the training apart."""
+        last = len(self._angles) - 1
+        rows = [round(last - k * self._pace) for k in range(self._memory)]
+        rows = [row for row in reversed(rows) if row >= 0]
+        angles, velocity = (np.stack([part[row] for row in rows]) for part in (self._angles, self._velocity))
+        Q = len(rows)
+        return Inputs(angles, velocity, np.zeros((Q, 0)), np.zeros(Q, dtype=np.int64), self._names)
 
 
 def _predictor(model: DetailModel) -> Callable[[Inputs], FloatArray]:
