@@ -16,7 +16,7 @@ from tempose.typing import FloatArray
 class RidgeLearner:
     """Ridge regression; the penalty is chosen by blocks left out."""
 
-    penalties: tuple[float, ...] = tuple(10.0**e for e in np.arange(-4.0, 2.1, 0.5))
+    penalties: tuple[float, ...] = tuple(10.0**e for e in np.arange(-6.0, 2.1, 0.5))
     """Tried, as parts of the variance of the inputs times the number of frames."""
     momentum: float = 0.5
     """Weight of velocities beside angles, both at variance 1."""
