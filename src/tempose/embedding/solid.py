@@ -10,6 +10,7 @@ from scipy import ndimage
 from scipy.fft import dstn, idstn
 
 from tempose.embedding._crossings import line_crossings
+from tempose.embedding._distance import distance_inside
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 CELLS = 160
@@ -156,8 +157,7 @@ def make_solid(V: FloatArray, F: IntArray, cells: int = CELLS) -> Solid:
     if not inside.any():
         raise ValueError("the mesh encloses no volume; its surface may be open or folded flat")
     inside, bridged, lost = _one_piece(inside)
-    distance: Any = ndimage.distance_transform_edt(inside)
-    depth = distance * spacing - 0.5 * spacing * inside
+    depth = distance_inside(inside) * spacing - 0.5 * spacing * inside
     return Solid(inside, origin, spacing, np.maximum(depth, 0.0), walls, bridged, lost)
 
 
@@ -176,10 +176,10 @@ def _one_piece(inside: BoolArray) -> tuple[BoolArray, int, float]:
     piece, lost = _largest(inside)
     if lost < _MAX_LOST:
         return piece, 0, lost
-    outside: Any = ndimage.distance_transform_edt(~inside)
+    outside = distance_inside(~inside)
     for width in range(1, _MAX_BRIDGE + 1):
         # the rim of the grid is outside: what has grown up to it shrinks back from it, too
-        back: Any = ndimage.distance_transform_edt(np.pad(outside <= width, 1))
+        back = distance_inside(np.pad(outside <= width, 1))
         # what growing has joined, shrunk back; the cells that were there stay
         piece, lost = _largest(inside | (back[1:-1, 1:-1, 1:-1] > width))
         if lost < _MAX_LOST:

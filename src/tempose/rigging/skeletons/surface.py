@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.clips import Mesh
-from tempose.geometry import face_areas, find_defects, weld
+from tempose.geometry import boundary_edges, face_areas, face_components, weld
 
 
 def surface_warnings(mesh: Mesh) -> tuple[str, ...]:
@@ -23,16 +23,16 @@ def surface_warnings(mesh: Mesh) -> tuple[str, ...]:
     """
     first, inverse = weld(mesh.vertices)
     V, F = mesh.vertices[first], inverse[mesh.faces]
-    found = find_defects(V, F)
+    edges, pieces = len(boundary_edges(F)), face_components(F, len(V))[0] if len(F) else 0
     said: list[str] = []
-    if found.boundary_edges:
+    if edges:
         said.append(
-            f"the surface is open: {found.boundary_edges} edges have a face on one side only; "
+            f"the surface is open: {edges} edges have a face on one side only; "
             "the inside was closed over the holes"
         )
-    if found.pieces > 1:
+    if pieces > 1:
         said.append(
-            f"the surface is in {found.pieces} pieces; what lies inside any of them counts as inside, "
+            f"the surface is in {pieces} pieces; what lies inside any of them counts as inside, "
             "and pieces that see no bone take the weights of their nearest neighbour"
         )
     if len(F) and enclosed_volume(mesh) < -_INSIDE_OUT * float(face_areas(V, F).sum()) ** 1.5:
