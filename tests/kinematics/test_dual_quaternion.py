@@ -61,6 +61,8 @@ def test_a_vertex_of_one_bone_agrees_with_linear_blending(skin, rng) -> None:
 def test_agrees_with_the_blend_written_out_in_quaternions(skin, rng) -> None:
     rotations, root = small_motion(skin, rng)
     posed = dual_quaternion_skinning(skin, rotations, root)
+    flipped = rotations * rng.choice([-1.0, 1.0], size=(4, J, 1))
+    assert_allclose(dual_quaternion_skinning(skin, flipped, root), posed, rtol=0, atol=1e-13)
     turns, shifts = bone_transforms(skin.skeleton, rotations, root)
     real, dual = dual_quaternions(turns, shifts)
     for t in range(len(root)):

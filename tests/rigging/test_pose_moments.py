@@ -8,11 +8,12 @@ from numpy.testing import assert_allclose
 from pose_cases import J, posed, random_motion, random_skin
 
 from tempose.clips import SkinnedMesh
-from tempose.kinematics import rest_transforms
+from tempose.kinematics import bone_transforms, rest_transforms
 from tempose.rigging.pose_fit import moments as moments_module
 from tempose.rigging.pose_fit.linear_kernels import add_curvature, bone_rows, energy, twist_quadratic
 from tempose.rigging.pose_fit.moments import SkinMoments, about_joints
 from tempose.rigging.pose_fit.nearest_rotation import nearest_rotation
+from tempose.rigging.pose_fit.starts import bone_sums, closed_form_start
 from tempose.rigging.pose_fit.tree_kernels import (
     damped_step,
     normal_equations,
@@ -117,6 +118,23 @@ def test_the_damped_step_solves_its_system(rng) -> None:
     assert_allclose(step, expected, rtol=1e-7)
     assert_allclose(fall, -g @ expected, rtol=1e-7)
     assert damped_step(H - 100 * np.eye(N), g, 0.0, L, step) == -1
+
+
+@pytest.mark.parametrize("hinged", [True, False])
+def test_the_closed_form_start_is_exact_for_rigid_bones(rng, hinged) -> None:
+    skin = random_skin(rng)
+    rigid = SkinnedMesh(skin.mesh, skin.skeleton, (skin.weights > 0.5).astype(float))
+    rotations, root = random_motion(rigid, rng, 1, size=2.0)
+    made = SkinMoments(rigid)
+    seen = made.frames(posed(rigid, (rotations, root)))
+    p = rest_transforms(skin.skeleton)[1] - made.centre
+    A, B = about_joints(made.A, seen.moments, p)
+    parents = skin.skeleton.parents.astype(np.int64)
+    R, start = np.zeros((J, 3, 3)), np.zeros(3)
+    closed_form_start(bone_sums(A), B[0], parents, p - p[np.maximum(parents, 0)], hinged, R, start)
+    turns, _ = bone_transforms(skin.skeleton, rotations[0], root[0])
+    assert_allclose(R, to_matrix(turns), rtol=0, atol=1e-9)
+    assert_allclose(start, root[0] - seen.centres[0], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("kind", ["any", "flat", "reflected", "half turn"])
