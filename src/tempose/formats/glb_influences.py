@@ -46,7 +46,9 @@ def vertex_attribute(
     return values
 
 
-def influences(doc: Document, primitive: Item, n: int, joints: int) -> tuple[IntArray, FloatArray]:
+def influences(
+    doc: Document, primitive: Item, n: int, joints: int
+) -> tuple[IntArray, FloatArray, FloatArray]:
     """Decode the skin weights of a primitive.
 
     Parameters
@@ -66,6 +68,8 @@ def influences(doc: Document, primitive: Item, n: int, joints: int) -> tuple[Int
         Indices into the joints of the skin; k is 4 for each pair of attributes, 0 without any.
     weights : (n, k) ndarray of float64
         Rows sum to 1; a vertex bound to nothing is held by the first joint.
+    sums : (n,) ndarray of float64
+        What they summed to in the file; 1 without any.
 
     Raises
     ------
@@ -93,8 +97,9 @@ def influences(doc: Document, primitive: Item, n: int, joints: int) -> tuple[Int
         indices.append(np.where(share > 0, which, 0))
         weights.append(share.astype(np.float64))
     which, share = np.concatenate(indices, axis=1), np.concatenate(weights, axis=1)
+    sums = share.sum(axis=1) if share.shape[1] else np.ones(n)
     if share.shape[1]:
         # bound to nothing: hold it by the first joint rather than let it collapse to the origin
         share[share.sum(axis=1) == 0, 0] = 1.0
         share /= share.sum(axis=1, keepdims=True)
-    return which, share
+    return which, share, sums

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.formats import glb_accessors as accessors
+from tempose.formats._skin_notes import weight_notes
 from tempose.formats.glb_container import Document
 from tempose.formats.glb_influences import influences, vertex_attribute
 from tempose.formats.glb_json import Item
@@ -43,6 +44,8 @@ class Part:
     """(n, k) indices into the joints of the skin; k = 0 without a skin."""
     weights: FloatArray
     """(n, k) float64, rows sum to 1."""
+    sums: FloatArray
+    """(n,) what the weights summed to in the file; 1 without a skin."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,7 @@ def read_geometry(doc: Document, nodes: Nodes) -> Geometry:
         raise doc.top.error("expected a mesh with triangles in the scene, found none")
     n = parts[-1].start + len(parts[-1].base)
     notes = (f"{skipped} primitives without triangles are left out.",) if skipped else ()
+    notes += weight_notes(np.concatenate([part.sums for part in parts]))
     return Geometry(tuple(parts), tuple(primitives), n, notes)
 
 
@@ -133,12 +137,12 @@ def _part(
     morph = np.zeros(K) if morph is None else morph
     if len(morph) != K:
         raise mesh.error(f"expected {K} weights, one a morph target, found {len(morph)}", "weights")
-    joints, weights = np.zeros((len(base), 0), np.int64), np.zeros((len(base), 0))
+    joints, weights, sums = np.zeros((len(base), 0), np.int64), np.zeros((len(base), 0)), np.ones(len(base))
     if skin is not None:
         size = len(doc.top.items("skins")[skin].integers("joints"))
-        joints, weights = influences(doc, primitive, len(base), size)
+        joints, weights, sums = influences(doc, primitive, len(base), size)
     held = skin if joints.shape[1] else None
-    return Part(primitive, node, start, base.astype(np.float64), targets, morph, held, joints, weights)
+    return Part(primitive, node, start, base.astype(np.float64), targets, morph, held, joints, weights, sums)
 
 
 def _target(doc: Document, target: Item, n: int) -> int | None:

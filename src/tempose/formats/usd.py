@@ -15,6 +15,7 @@ import numpy as np
 from tempose.clips import Mesh, MeshClip, SkeletonClip, SkinnedMesh
 from tempose.formats._joint_moves import reduce_moves, rigid
 from tempose.formats._place import inside
+from tempose.formats._skin_notes import weight_notes
 from tempose.formats.usd_mesh import Part, join, points_at, read_parts
 from tempose.formats.usd_skel import (
     Rigged,
@@ -24,6 +25,7 @@ from tempose.formats.usd_skel import (
     read_rigged,
     sample_times,
     skin_weights,
+    stated_weights,
 )
 from tempose.formats.usd_stage import Stage, frame_times, modules, open_stage
 from tempose.typing import FloatArray, IntArray
@@ -180,6 +182,8 @@ def read_skin(
     if not rigged.skinned:
         raise stage.error("expected a mesh with a skin, found a skeleton that moves none")
     mesh = join(stage, parts, _rest(stage, parts, rigged))
+    notes = weight_notes(stated_weights(stage, rigged, parts).sum(axis=1))
+    mesh = replace(mesh, source=replace(mesh.source, notes=(*mesh.source.notes, *notes)))
     return SkinnedMesh(mesh, bind_skeleton(stage, rigged), skin_weights(stage, rigged, parts))
 
 

@@ -233,6 +233,29 @@ def skin_weights(stage: Stage, rigged: Rigged, parts: list[Part]) -> FloatArray:
     FormatError
         If a joint is out of range, a weight negative, or numbers are missing.
     """
+    weights = stated_weights(stage, rigged, parts)
+    sums = weights.sum(axis=1, keepdims=True)
+    return weights / np.where(sums > 0, sums, 1.0)
+
+
+def stated_weights(stage: Stage, rigged: Rigged, parts: list[Part]) -> FloatArray:
+    """Weights of every vertex as the file states them.
+
+    Parameters
+    ----------
+    stage, rigged, parts
+        As for `skin_weights`.
+
+    Returns
+    -------
+    (n, J) ndarray
+        Not normalised.
+
+    Raises
+    ------
+    FormatError
+        As for `skin_weights`.
+    """
     J = len(rigged.kept)
     first = int(rigged.kept[0] < 0)
     weights = np.zeros((parts[-1].start + parts[-1].n, J))
@@ -260,5 +283,4 @@ def skin_weights(stage: Stage, rigged: Rigged, parts: list[Part]) -> FloatArray:
             raise stage.error(f"{where}expected weights from 0, found {shares.min():g}")
         rows = np.arange(part.start, part.start + part.n)[:, None]
         np.add.at(weights, (rows, own[joints] + first), shares.astype(np.float64))
-    sums = weights.sum(axis=1, keepdims=True)
-    return weights / np.where(sums > 0, sums, 1.0)
+    return weights
