@@ -151,12 +151,15 @@ def _predictor(model: DetailModel) -> Callable[[Inputs], FloatArray]:
     def by_mixing(inputs: Inputs) -> FloatArray:
         return predictor.mix(inputs).weights[:, -1] @ coordinates
 
-    if not isinstance(predictor, KernelPredictor) or predictor.bank is None or None in predictor.kernels:
+    if not isinstance(predictor, KernelPredictor) or predictor.bank is None:
         return by_mixing
     bank, features = predictor.bank, predictor.features
+    alive = [r for r, kernel in enumerate(predictor.kernels) if kernel is not None]
     solved = bank.solve(coordinates)
+    found = np.zeros((len(predictor.kernels), coordinates.shape[1]))
 
     def by_means(inputs: Inputs) -> FloatArray:
-        return bank.means(features(inputs)[-1:], solved)[:, 0]
+        found[alive] = bank.means(features(inputs)[-1:], solved)[:, 0]
+        return found
 
     return by_means
