@@ -23,7 +23,7 @@ def _unconstrained(E: FloatArray, S: IntArray, k: int, L: FloatArray, z: FloatAr
     """Write the minimiser of ``w^T E w`` with sum 1 (signs free) into z."""
     trace = 0.0
     for a in range(k):
-        trace += E[S[a], S[a]]
+        trace += abs(E[S[a], S[a]])
     ridge = 1e-12 * trace + 1e-300
     for a in range(k):
         for b in range(a + 1):
@@ -52,7 +52,9 @@ def _unconstrained(E: FloatArray, S: IntArray, k: int, L: FloatArray, z: FloatAr
 
 @njit(cache=True)
 def convex_weights(E: FloatArray, S: IntArray, k: int, w: FloatArray, L: FloatArray, z: FloatArray) -> int:
-    """Minimise ``w^T E w`` over weights >= 0 of sum 1, by an active set that starts at w.
+    """Lower ``w^T E w`` over weights >= 0 of sum 1, by an active set that starts at w.
+
+    A bone that leaves does not come back here: `choose_bones` sees which ones should.
 
     Parameters
     ----------
@@ -102,13 +104,13 @@ def _inverse(E: FloatArray, S: IntArray, P: FloatArray) -> None:
     K = len(S)
     ridge = 1e-300
     for a in range(K):
-        ridge += 1e-12 * E[S[a], S[a]]
+        ridge += 1e-12 * abs(E[S[a], S[a]])
     for a in range(K):
         for b in range(K):
             P[a, b] = E[S[a], S[b]]
         P[a, a] += ridge
     for a in range(K):
-        pivot = P[a, a] if P[a, a] > ridge else ridge
+        pivot = max(P[a, a], ridge)
         P[a, a] = 1.0
         for c in range(K):
             P[a, c] /= pivot
@@ -135,7 +137,7 @@ def _swap_bounds(E: FloatArray, S: IntArray, P: FloatArray, j: int, z: FloatArra
             total += P[a, b]
         schur -= z[a] * E[S[a], j]
         rest -= z[a]
-    schur = max(schur, 1e-12 * E[j, j] + 1e-300)
+    schur = max(schur, 1e-12 * abs(E[j, j]) + 1e-300)
     total += rest * rest / schur
     for a in range(K):
         row = -z[a] * rest / schur
@@ -202,9 +204,7 @@ def choose_bones(
     k = convex_weights(E, S, k, w, F[:K], F[K + 1])
     energy = mixing_energy(E, S, k, w)
     for _ in range(4 * K):
-        before = energy
-        if k == K:
-            _inverse(E, S, F[K + 2 : 2 * K + 2])
+        before, inverted = energy, False
         for j in range(B):
             g[j] = 0.0
             for a in range(k):
@@ -219,6 +219,9 @@ def choose_bones(
                 k = convex_weights(E, S, k + 1, w, F[:K], F[K + 1])
                 energy = mixing_energy(E, S, k, w)
             else:
+                if not inverted:
+                    _inverse(E, S, F[K + 2 : 2 * K + 2])
+                    inverted = True
                 k, energy = _swap(E, S, k, w, j, energy, spare, F)
             if energy < before:
                 break
