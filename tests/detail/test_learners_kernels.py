@@ -208,6 +208,28 @@ def test_variance_factor_is_that_of_processes_made_without_the_block(case):
     assert_allclose(factor, np.clip(wrong / said, 0.3, 10), rtol=1e-6)
 
 
+def test_predicted_variances_carry_the_factor(case):
+    training, _, _ = case
+    predictor = PlainGaussianProcess().fit(training)
+    S = training.centred().sum(axis=0)
+    spread = np.trace(S) / (60 * training.sizes.sum())
+    factor = variance_factor(predictor.kernels[0], predictor.X, S / S.trace() * 60, training.inputs.chains)
+    assert factor != pytest.approx(1.0, rel=0.01)
+    assert_allclose(predictor.spreads, factor * spread, rtol=1e-9)
+
+
+def test_frames_with_an_unknown_past_count_less_where_the_past_matters(rng):
+    inputs = replace(swing(rng, 90), chains=np.repeat([0, 1], 45))
+    late = past(inputs.velocity, np.zeros(90, dtype=int), 6).reshape(90, -1)
+    D = (late @ rng.standard_normal((6, 30))).reshape(90, 10, 3)
+    predictor = RegionalGaussianProcess().fit(Training(inputs, *region_grams(D, np.ones((10, 1)))))
+    ages = frame_ages(inputs.chains)
+    assert (predictor.vague[0, ages >= 12] == 0).all()
+    assert (predictor.vague[0, ages < 6] > 10 * predictor.kernels[0].noise).all()
+    weights = np.abs(predictor.mix(inputs).weights[0])
+    assert weights[:, ages < 6].mean() < 0.5 * weights[:, ages >= 12].mean()
+
+
 def test_the_same_training_gives_the_same_predictor(case):
     training, _, _ = case
     a, b = (RegionalGaussianProcess().fit(training).mix(training.inputs) for _ in range(2))
