@@ -16,7 +16,7 @@ from typing import Any
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-SUITES = ("transfer", "signals")
+SUITES = ("transfer", "signals", "rigging")
 ROOT = Path(__file__).resolve().parents[1]
 
 
