@@ -50,6 +50,18 @@ def test_zero_channels_are_the_rest_pose(tmp_path):
     assert_allclose((here - here[0])[order], there - there[0], atol=1e-8)
 
 
+def test_root_has_no_offset_as_programs_differ_on_whether_to_add_it(tmp_path):
+    write_bvh(tmp_path / "a.bvh", wild_motion(odd_skeleton()))
+    lines = (tmp_path / "a.bvh").read_text().split("\n")
+    assert lines[1:4] == ["ROOT root", "{", "\tOFFSET 0 0 0"]
+    assert lines[4].split() == [
+        "CHANNELS",
+        "6",
+        *(f"{a}position" for a in "XYZ"),
+        *(f"{a}rotation" for a in "ZXY"),
+    ]
+
+
 def test_tips_come_back_and_unknown_ones_stay_unknown(tmp_path):
     clip = wild_motion(odd_skeleton())
     write_bvh(tmp_path / "a.bvh", clip)

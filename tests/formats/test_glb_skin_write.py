@@ -88,6 +88,25 @@ def test_four_weights_a_vertex_and_times_of_every_frame(tmp_path):
     assert_allclose(weights.sum(axis=1), 1, atol=1e-7)
 
 
+def test_keys_of_a_turn_stay_on_one_side(tmp_path):
+    skin = odd_skin()
+    formats.save_skin(tmp_path / "a.glb", skin, wild_motion(skin.skeleton, frames=60))
+    channels = list(read_motion_channels(tmp_path / "a.glb"))
+    assert len(channels) == skin.skeleton.n_joints
+    for values in channels:
+        assert (values[1:] * values[:-1]).sum(axis=1).min() > 0
+
+
+def read_motion_channels(path):
+    file = pygltflib.GLTF2().load(str(path))
+    blob = file.binary_blob()
+    for sampler in file.animations[0].samplers:
+        accessor = file.accessors[sampler.output]
+        if accessor.type == "VEC4":
+            view = file.bufferViews[accessor.bufferView]
+            yield np.frombuffer(blob, "<f4", 4 * accessor.count, view.byteOffset).reshape(-1, 4)
+
+
 def test_strongest_keeps_sums_and_the_largest(rng):
     weights = rng.dirichlet(np.ones(7), size=50)
     joints, kept = strongest(weights, 3)

@@ -189,7 +189,7 @@ def test_missing_joints_rest_where_that_is_allowed():
 
 
 def test_limbs_of_another_body_point_as_its_limbs_do():
-    walk = MOTIONS["human"]["walk"](SKELETON, duration=1.0) if "human" in MOTIONS else MOTION
+    walk = MOTIONS["human"]["walk"](SKELETON, duration=1.0)
     rng = np.random.default_rng(0)
     other = replace(SKELETON, offsets=SKELETON.offsets * rng.uniform(0.7, 1.4, size=(SKELETON.n_joints, 1)))
     away = from_rotation_vector(np.array([0, 0.9, 0]))
@@ -210,8 +210,35 @@ def test_limbs_of_another_body_point_as_its_limbs_do():
             u, v = here[:, b] - here[:, a], there[:, b] - there[:, a]
             cosine = (u * v).sum(axis=1) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1)
             assert np.degrees(np.arccos(np.clip(cosine, -1, 1))).max() < 1e-4
+    # it faces where the other faces, whichever way that one's rest pose faces
+    assert angle_between(ours.motion.rotations[:, 0], walk.rotations[:, 0]).max() < 0.02
     floor = rest_transforms(SKELETON)[1][:, 1].min()
     assert abs(np.percentile(here[..., 1].min(axis=1), 5) - floor) < 1e-9
+
+
+def test_hands_keep_their_twist_when_the_other_rests_with_raised_arms():
+    walk = MOTIONS["human"]["walk"](SKELETON, duration=0.5)
+    roles, (world, rest) = find_roles(SKELETON), rest_transforms(SKELETON)
+    pose = np.array(SKELETON.rest_rotations)
+    arms = [roles["left_upper_arm"], roles["right_upper_arm"]]
+    for j in arms:
+        bone = rest[SKELETON.children(j)[0]] - rest[j]
+        # about an axis across the bone, so that the shortest way back is the way it came
+        axis = np.cross(bone, [0.3, 0.2, 1.0])
+        lift = from_rotation_vector(0.9 * axis / np.linalg.norm(axis))
+        pose[j] = multiply(conjugate(world[SKELETON.parents[j]]), multiply(lift, world[j]))
+    theirs = at_other_rest(walk, pose)
+    stretched = np.array(theirs.skeleton.offsets)
+    stretched[[roles["left_shin"], roles["right_shin"]]] *= 1.3
+    theirs = replace(theirs, skeleton=replace(theirs.skeleton, offsets=stretched))
+    ours = matched_motion(SKELETON, theirs)
+    before = forward_kinematics(SKELETON, walk.rotations, walk.root_position)[0]
+    after = forward_kinematics(SKELETON, ours.motion.rotations, ours.motion.root_position)[0]
+    below = [
+        roles[f"{side}_{part}"] for side in ("left", "right") for part in ("upper_arm", "forearm", "hand")
+    ]
+    assert angle_between(before, after)[:, below].max() < 1e-6
+    assert 40 < ours.rest_angles[arms].max() < 60 and any("look at the result" in w for w in ours.warnings)
 
 
 def test_travel_goes_with_the_length_of_the_legs():
