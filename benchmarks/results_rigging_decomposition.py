@@ -87,9 +87,7 @@ def row(name: str, bones: int, frames: np.ndarray, faces: np.ndarray) -> str:
     short = lambda p: f"{p['errors'].e_rms:.3f}" + (f" ({p['bones']} bones)" if p["bones"] != bones else "")
     cells = [name, bones, short(mine), f"{e.kg:.3f}", f"{e.max_percent:.2f}", f"{mine['cpu']:.1f}"]
     cells += [short(fair), f"{fair['cpu']:.1f}", short(default), f"{default['cpu']:.1f}"]
-    return line(
-        *cells, f"{e.e_rms / fair['errors'].e_rms:.2f}", f"{mine['cpu'] / fair['cpu']:.2f}"
-    )
+    return line(*cells, f"{e.e_rms / fair['errors'].e_rms:.2f}", f"{mine['cpu'] / fair['cpu']:.2f}")
 
 
 def main() -> None:

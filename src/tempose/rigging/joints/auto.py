@@ -24,6 +24,7 @@ def auto_skin(
     *,
     influences: int = 4,
     tolerance: float = 3e-3,
+    pull: float = 0.02,
     seed: int = 0,
     progress: Progress = silent,
 ) -> tuple[SkinnedMesh, dict[str, Any]]:
@@ -39,6 +40,8 @@ def auto_skin(
         Most bones that a vertex may follow.
     tolerance : float, default 3e-3
         Root mean square distance, in diagonals of the rest mesh, that sets the number of bones.
+    pull : float, default 0.02
+        How firmly joints stay where both bones hold the mesh, see `settle`.
     seed : int, default 0
         The same seed gives the same answer.
     progress : Progress
@@ -64,7 +67,7 @@ def auto_skin(
     count = bones if bones is not None else count_bones(frames, rest, tolerance, influences, seed=seed)
     found = decompose(frames, rest, bones=count, influences=influences, seed=seed, progress=progress)
     skeleton, weights, motion = skeleton_from_bones(found, fps=clip.fps)
-    settled = settle(rest, skeleton, weights, motion, frames, influences, progress=progress)
+    settled = settle(rest, skeleton, weights, motion, frames, influences, pull=pull, progress=progress)
     report = _report(found, settled.vertices, frames)
     report["frames"] = len(used)
     skin = SkinnedMesh(clip.mesh, settled.skin.skeleton, settled.skin.weights[back])

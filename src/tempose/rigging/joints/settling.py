@@ -13,8 +13,6 @@ from tempose.rigging.decomposition import weights_for
 from tempose.rigging.refine import refine_joints
 from tempose.typing import FloatArray, Progress, silent
 
-_PULL = 0.2  # mean squared turn: much above the usual, since free joints wander out along hinges
-
 
 @dataclass(frozen=True, eq=False)
 class Settled:
@@ -41,6 +39,7 @@ def settle(
     frames: FloatArray,
     influences: int = 4,
     *,
+    pull: float = 0.02,
     rounds: int = 10,
     progress: Progress = silent,
 ) -> Settled:
@@ -60,6 +59,10 @@ def settle(
         Positions to reach, metres.
     influences : int, default 4
         Most bones that a vertex may follow.
+    pull : float, default 0.02
+        Holds a joint where it is, as a mean squared turn (radians) about it would. Hinges leave the place
+        along their axis open: with a small pull the skin follows the clip more closely, and joints may wander
+        out of the mesh.
     rounds : int, default 10
         How often weights are solved again; a round that lowers the error by less than 1 % is the
         last.
@@ -72,12 +75,12 @@ def settle(
         Skin, motion and errors.
     """
     mesh = Mesh(rest, np.zeros((0, 3), dtype=np.int32))
-    best = _joined(SkinnedMesh(mesh, skeleton, weights), motion, frames)
+    best = _joined(SkinnedMesh(mesh, skeleton, weights), motion, frames, pull)
     history = [_rms(best, frames)]
     for k in range(rounds):
         turns, shifts = bone_transforms(best[0].skeleton, best[1].rotations, best[1].root_position)
         again = weights_for(frames, rest, turns, shifts, weights=best[0].weights, influences=influences)
-        trial = _joined(SkinnedMesh(mesh, best[0].skeleton, again), best[1], frames)
+        trial = _joined(SkinnedMesh(mesh, best[0].skeleton, again), best[1], frames, pull)
         progress(k + 1, rounds, "joints and weights")
         rms = _rms(trial, frames)
         if rms >= history[-1]:
@@ -89,8 +92,10 @@ def settle(
     return Settled(*best, np.array(history))
 
 
-def _joined(skin: SkinnedMesh, motion: SkeletonClip, frames: FloatArray) -> tuple[SkinnedMesh, SkeletonClip]:
-    refined = refine_joints(skin, motion, frames, pull=_PULL)
+def _joined(
+    skin: SkinnedMesh, motion: SkeletonClip, frames: FloatArray, pull: float
+) -> tuple[SkinnedMesh, SkeletonClip]:
+    refined = refine_joints(skin, motion, frames, pull=pull)
     return refined.skin, refined.fit.motion
 
 
