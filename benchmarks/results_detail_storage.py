@@ -1,6 +1,6 @@
 """How small a file of learned detail is beside the clip it was learned from, and what it loses.
 
-python benchmarks/results_detail_storage.py [CRANE]     table of docs/results.md; CRANE is the folder of the clip
+python benchmarks/results_detail_storage.py [CRANE]     table of docs/results.md; CRANE is a folder
 """
 
 from __future__ import annotations

@@ -278,7 +278,7 @@ class DetailModel:
         -------
         (T,) ndarray
             Angle to the most alike pose of the training, over that which 95 % of its own poses have to one at
-            another time; above 1 detail is a guess.
+            another time (or 0.3 of their distance from the mean pose); above 1 detail is a guess.
         """
         query = self._query(motion)
         angle = query.frames(nearest_distances(query.inputs, self._learned))

@@ -15,6 +15,9 @@ _MEMORY = 64
 _NEAR = 5
 """Frames on either side that are no evidence of how far poses of a clip are from one another."""
 
+_SPREAD = 0.3
+"""Part of the distance from the mean pose that two poses may always be apart and still be alike."""
+
 
 def coefficients(predictor: Predictor, detail: DetailBasis, inputs: Inputs, n_regions: int) -> FloatArray:
     """Predict the coefficients of the modes.
@@ -111,8 +114,11 @@ def usual_distance(inputs: Inputs) -> float:
     Returns
     -------
     float
-        95th percentile, radians; 0 for frames that are all alike.
+        95th percentile, radians; at least `_SPREAD` of their distance from the mean pose, since a cycle that
+        repeats exactly does not make every other pose a stranger.
     """
     found = nearest_distances(inputs, inputs, min(_NEAR, (len(inputs) - 1) // 4))
     found = found[np.isfinite(found)]
-    return float(np.percentile(found, 95)) if len(found) else 0.0
+    usual = float(np.percentile(found, 95)) if len(found) else 0.0
+    spread = np.sqrt(inputs.angles.var(axis=0).sum())
+    return max(usual, _SPREAD * float(spread))
