@@ -77,15 +77,10 @@ def fit_poses(
 
     Notes
     -----
-    Minimises the squared distance of all vertices in the turns of all joints and the place of the root,
-    section 3.2 of [1]_, bone lengths fixed. The energy of linear blend skinning is a quadratic in the bone
+    Minimises the squared distance of all vertices in the turns of all joints and the place of the root, bone
+    lengths fixed. The energy of linear blend skinning is a quadratic in the bone
     matrices, so that vertices are visited once (`SkinMoments`). Every frame starts from the frames before
     and from a closed form of its own; tracking alone can lose a limb for the rest of a clip.
-
-    References
-    ----------
-    .. [1] See the paper named in docs/rigging.md: skeleton-based editing of mesh sequences with learned
-       surface detail.
     """
     if steps < 1:
         raise ValueError(f"steps must be at least 1, got {steps}")
