@@ -16,7 +16,7 @@ from typing import Any
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-SUITES = ("transfer", "signals", "rigging")
+SUITES = ("transfer", "signals", "rigging", "detail")
 ROOT = Path(__file__).resolve().parents[1]
 
 
