@@ -1,7 +1,7 @@
 """Skeletons from frames alone: against the truth where it is known, and for animals.
 
-python benchmarks/results_rigging_bones.py            both tables of docs/results.md
-python benchmarks/results_rigging_bones.py animals    rows printed, pictures written to the folder animals/
+python benchmarks/results_rigging_bones.py           both tables of docs/results.md
+python benchmarks/results_rigging_bones.py FOLDER    the same, and pictures of the animals
 """
 
 from __future__ import annotations
@@ -111,20 +111,18 @@ def animal_row(name: str, clip: MeshClip, folder: Path | None) -> str:
 
 
 def main() -> None:
-    only = len(sys.argv) > 1
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else None
     rows: list[str] = []
-    if not only:
-        for truth in truths(DATA):
-            for bones, influences in SETTINGS[truth.name]:
-                rows.append(truth_row(truth, bones, influences))
-                print(rows[-1], flush=True)
-        write_block("rigging-bones", table(TRUTH_COLUMNS, rows))
+    for truth in truths(DATA):
+        for bones, influences in SETTINGS[truth.name]:
+            rows.append(truth_row(truth, bones, influences))
+            print(rows[-1], flush=True)
+    write_block("rigging-bones", table(TRUTH_COLUMNS, rows))
     rows = []
     for name, clip in animals().items():
-        rows.append(animal_row(name, clip, Path("animals") if only else None))
+        rows.append(animal_row(name, clip, folder))
         print(rows[-1], flush=True)
-    if not only:
-        write_block("rigging-animals", table(ANIMAL_COLUMNS, rows))
+    write_block("rigging-animals", table(ANIMAL_COLUMNS, rows))
 
 
 if __name__ == "__main__":

@@ -78,15 +78,19 @@ def ours(frames: np.ndarray, bones: int) -> dict[str, Any]:
     return {"cpu": cpu, "errors": errors(frames, found.vertices()), "bones": found.n_bones}
 
 
+def short(found: dict[str, Any], bones: int) -> str:
+    fewer = f" ({found['bones']} bones)" if found["bones"] != bones else ""
+    return f"{found['errors'].e_rms:.3f}{fewer}"
+
+
 def row(name: str, bones: int, frames: np.ndarray, faces: np.ndarray) -> str:
     with tempfile.TemporaryDirectory() as folder:
         fair = peer(Path(folder), frames, faces, bones, "fair")
         mine = ours(frames, bones)
         default = peer(Path(folder), frames, faces, bones, "default")
     e = mine["errors"]
-    short = lambda p: f"{p['errors'].e_rms:.3f}" + (f" ({p['bones']} bones)" if p["bones"] != bones else "")
-    cells = [name, bones, short(mine), f"{e.kg:.3f}", f"{e.max_percent:.2f}", f"{mine['cpu']:.1f}"]
-    cells += [short(fair), f"{fair['cpu']:.1f}", short(default), f"{default['cpu']:.1f}"]
+    cells = [name, bones, short(mine, bones), f"{e.kg:.3f}", f"{e.max_percent:.2f}", f"{mine['cpu']:.1f}"]
+    cells += [short(fair, bones), f"{fair['cpu']:.1f}", short(default, bones), f"{default['cpu']:.1f}"]
     return line(*cells, f"{e.e_rms / fair['errors'].e_rms:.2f}", f"{mine['cpu'] / fair['cpu']:.2f}")
 
 

@@ -8,6 +8,7 @@ from bone_cases import chain, matched
 from numpy.testing import assert_allclose
 
 from tempose import formats
+from tempose.kinematics import bone_transforms
 from tempose.metrics import compare
 from tempose.rigging.decomposition import count_bones, decompose, weights_for
 from tempose.rotations import angle_between, from_rotation_vector, rotate, to_matrix
@@ -62,8 +63,6 @@ def test_the_same_seed_gives_the_same_answer(bent):
 
 def test_weights_for_true_bones_are_the_true_weights(bent):
     skin, motion, clip = bent
-    from tempose.kinematics import bone_transforms
-
     turns, shifts = bone_transforms(skin.skeleton, motion.rotations, motion.root_position)
     W = weights_for(clip.vertices.astype(float), skin.mesh.vertices, turns, shifts)
     assert_allclose(W, skin.weights, atol=1e-4)
@@ -120,8 +119,6 @@ def test_bad_input_is_refused(bent, change, message):
 
 def test_turns_agree_with_the_true_ones(bent, found):
     skin, motion, _ = bent
-    from tempose.kinematics import bone_transforms
-
     turns, _ = bone_transforms(skin.skeleton, motion.rotations, motion.root_position)
     order = matched(found.weights, skin.weights)
     assert np.degrees(angle_between(found.rotations[:, order], turns)).max() < 0.5

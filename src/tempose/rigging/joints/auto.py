@@ -65,6 +65,11 @@ def auto_skin(
     first, back = distinct_vertices(clip.rest, frames)
     rest, frames = clip.rest[first], frames[:, first]
     count = bones if bones is not None else count_bones(frames, rest, tolerance, influences, seed=seed)
+    if count == 1 and bones is None:
+        raise ValueError(
+            f"clip moves as one rigid body, to {100 * tolerance:.2g} % of D: there are no bones to find; "
+            "use skeleton 'human' or a skeleton file, or a smaller tolerance"
+        )
     found = decompose(frames, rest, bones=count, influences=influences, seed=seed, progress=progress)
     skeleton, weights, motion = skeleton_from_bones(found, fps=clip.fps)
     settled = settle(rest, skeleton, weights, motion, frames, influences, pull=pull, progress=progress)
