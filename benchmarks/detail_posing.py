@@ -74,7 +74,8 @@ def rows() -> list[dict[str, Any]]:
     base = least["plain numpy"]
 
     def entry(name: str, what: str, seconds: float, goal: tuple[float, float] | None) -> dict[str, Any]:
-        known = {"name": f"detail/pose/{name}", "what": what, "seconds": seconds}
+        value = f"{1000 * seconds:.3f} ms"
+        known = {"name": f"detail/pose/{name}", "what": what, "seconds": seconds, "value": value}
         return {**known, "ratio": base / seconds, "against": "the frame in plain numpy", "goal": goal}
 
     body = f"{n} vertices, 18 joints, {K} modes, {FRAMES} training frames"
