@@ -85,9 +85,9 @@ def bound(m: Material, split: Split) -> float:
 
 
 def judged(learner: Callable[[], Learner], m: Material, split: Split) -> tuple[list[Evaluation], float]:
-    start = time.perf_counter()
+    start = time.process_time()
     parts = [evaluate(learner(), m.training, *part, D=m.D, shares=m.shares) for part in split]
-    return parts, (time.perf_counter() - start) / len(split)
+    return parts, (time.process_time() - start) / len(split)
 
 
 def basis_rows(rig: Rig, clip: MeshClip, kinds: dict[str, Split], unit: float) -> list[str]:
@@ -140,7 +140,7 @@ def main() -> None:
     write_block("detail-bases", table(["basis", *columns], by_basis))
     one = ["rms %", "/ none", "/ gp", "rho", "rho regions", "calibration"]
     columns = [f"{kind}: {name}" if name == one[0] else name for kind in kinds for name in one]
-    write_block("detail-heldout", table(["learner", *columns, "seconds"], rows))
+    write_block("detail-heldout", table(["learner", *columns, "processor, s"], rows))
 
 
 if __name__ == "__main__":

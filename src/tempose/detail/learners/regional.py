@@ -84,7 +84,7 @@ class RegionalGaussianProcess:
 def _whole_body(X: FloatArray, groups: IntArray, blocks: IntArray, S: FloatArray) -> Kernel:
     """Most likely kernel with one scale a block, given to all groups of the block."""
     columns = np.unique(blocks, return_inverse=True)[1]
-    kernel = fit_kernel(X, columns, S).kernel
+    kernel = fit_kernel(X, columns, S, iterations=25).kernel
     block_of = np.zeros(groups.max() + 1, dtype=np.int64)
     block_of[groups] = columns
     return Kernel(kernel.smooth, kernel.linear, kernel.noise, kernel.precision[block_of], groups)
