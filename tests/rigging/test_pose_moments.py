@@ -11,13 +11,13 @@ from tempose.clips import SkinnedMesh
 from tempose.kinematics import bone_transforms, rest_transforms
 from tempose.rigging.pose_fit import moments as moments_module
 from tempose.rigging.pose_fit.linear_kernels import add_curvature, bone_rows, energy, twist_quadratic
+from tempose.rigging.pose_fit.matrix_kernels import orthonormalise
 from tempose.rigging.pose_fit.moments import SkinMoments, about_joints
 from tempose.rigging.pose_fit.nearest_rotation import nearest_rotation
 from tempose.rigging.pose_fit.starts import bone_sums, closed_form_start
 from tempose.rigging.pose_fit.tree_kernels import (
     damped_step,
     normal_equations,
-    orthonormalise,
     place,
     turn_joints,
 )

@@ -8,13 +8,14 @@ from numba import njit
 from tempose.clips.blocks import cut_blocks, read_block
 from tempose.kinematics import rest_transforms
 from tempose.kinematics.dual_quaternion import rows_by_strength
+from tempose.rigging.pose_fit.descent import MOST_DAMPING
 from tempose.rigging.pose_fit.dual_kernels import dual_energy
-from tempose.rigging.pose_fit.linear_kernels import MOST_DAMPING, bone_rows, twist_quadratic
+from tempose.rigging.pose_fit.linear_kernels import bone_rows, twist_quadratic
+from tempose.rigging.pose_fit.matrix_kernels import orthonormalise
 from tempose.rigging.pose_fit.moments import FrameMoments, SkinMoments
 from tempose.rigging.pose_fit.tree_kernels import (
     damped_step,
     normal_equations,
-    orthonormalise,
     place,
     turn_joints,
 )

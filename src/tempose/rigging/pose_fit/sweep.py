@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from tempose.rigging.pose_fit.linear_kernels import bone_rows, descend, energy
+from tempose.rigging.pose_fit.descent import descend
+from tempose.rigging.pose_fit.linear_kernels import bone_rows, energy
+from tempose.rigging.pose_fit.matrix_kernels import orthonormalise, product
 from tempose.rigging.pose_fit.starts import closed_form_start
-from tempose.rigging.pose_fit.tree_kernels import orthonormalise, place, product
+from tempose.rigging.pose_fit.tree_kernels import place
 from tempose.typing import BoolArray, FloatArray, IntArray
 
 _LOST = 1.05
