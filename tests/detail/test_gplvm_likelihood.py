@@ -124,3 +124,18 @@ def test_progress_may_cancel_the_training(rng):
 
     with pytest.raises(KeyboardInterrupt, match="latent model"):
         train_latent(gram, gram, latent_start(gram, 2), np.zeros(8, int), scales=(1, 1, 1), progress=stop)
+
+
+def test_training_pairs_no_frames_of_two_clips(rng):
+    """The value found is that of the likelihood whose dynamics leave the step between clips out."""
+    Y = rng.normal(size=(20, 3))
+    Y -= Y.mean(axis=0)
+    gram, _ = unit_gram(Y @ Y.T)
+    scales = (1.0, 1.0, 0.5)
+    fit = train_latent(
+        gram, gram, latent_start(gram, 2), np.repeat([4, 9], [12, 8]), scales=scales, iterations=5
+    )
+    Z = np.asfortranarray(gram_factor(gram))
+    joint = SharedObjective(Z, Z, np.delete(np.arange(19), 11), np.array([0, 12]), scales, 2)
+    hyper = np.log(np.concatenate([fit.skeleton, fit.detail, fit.dynamics]))
+    assert_allclose(joint(np.concatenate([fit.X.ravel(), hyper]))[0], fit.value, rtol=1e-9)
