@@ -138,6 +138,7 @@ class DetailModel:
         seconds["learning"] = time.perf_counter() - start
         C = coefficients(predictor, gathered.detail, training.inputs, gathered.shares.shape[1])
         report = fit_report(clips, gathered, chosen, C, self.basis, progress)
+        report["warnings"] += getattr(predictor, "warnings", ())
         self.rig_, self.motions_, self.detail_ = gathered.rig, gathered.motions, gathered.detail
         self.shares_, self.predictor_, self.coarse_ = gathered.shares, predictor, gathered.coarse
         self._prepare(training.inputs)
