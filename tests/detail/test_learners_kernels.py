@@ -112,6 +112,15 @@ def test_few_frames_and_constant_frames_are_survived(learner, rng, T):
         assert np.isfinite(mixture.weights).all() and np.isfinite(mixture.variance).all()
 
 
+@pytest.mark.parametrize("learner", GAUSSIAN, ids=lambda learner: learner.name)
+def test_a_residual_that_never_changes_is_the_mean_and_certain(learner, case):
+    training, D, shares = case
+    still = np.repeat(D[:1], 60, axis=0)
+    mixture = learner.fit(Training(training.inputs, *region_grams(still, shares))).mix(training.inputs)
+    assert_allclose(mixture.weights, 0)
+    assert mixture.variance.max() < 1e-12 * np.square(still).mean()
+
+
 def test_a_region_without_vertices_predicts_the_mean_and_leaves_the_others_alone(case, rng):
     training, D, shares = case
     wider = np.column_stack([shares[:, :1], np.zeros(len(shares)), shares[:, 1:]])

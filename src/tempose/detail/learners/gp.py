@@ -41,14 +41,12 @@ class PlainGaussianProcess:
         """
         features = TwoFrames()
         X = features(training.inputs)
-        centred = training.centred().sum(axis=0, keepdims=True)
-        grams, spreads = unit_grams(centred, training.sizes.sum(keepdims=True))
+        some = spread_frames(len(X), self.judged)
+        grams, spreads = unit_grams(training.gram[None], training.sizes.sum(keepdims=True), some)
         if len(X) < 3 or not spreads[0]:
             return KernelPredictor(features, [None], X, spreads)
-        some = spread_frames(len(X), self.judged)
-        S = grams[0]
         with one_blas_thread():
             groups = np.zeros(X.shape[1], dtype=np.int64)
-            kernel = fit_kernel(X[some], groups, S[np.ix_(some, some)], iterations=self.iterations).kernel
-            factor = variance_factor(kernel, X[some], S[np.ix_(some, some)], training.inputs.chains[some])
+            kernel = fit_kernel(X[some], groups, grams[0], iterations=self.iterations).kernel
+            factor = variance_factor(kernel, X[some], grams[0], training.inputs.chains[some])
         return KernelPredictor(features, [kernel], X, factor * spreads, self.inducing)

@@ -70,30 +70,36 @@ class KernelPredictor:
         return Mixture(weights, variance.T * self.spreads)
 
 
-def unit_grams(grams: FloatArray, sizes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Scale centred Gram matrices to outputs of variance 1.
+def unit_grams(grams: FloatArray, sizes: FloatArray, some: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Centre Gram matrices, scale them to outputs of variance 1 and keep some frames.
 
     Parameters
     ----------
     grams : (R, T, T) float
-        Inner products of centred residuals, metres squared.
+        Inner products of raw residuals, metres squared.
     sizes : (R,) float
         Coordinates of each region.
+    some : (k,) int
+        Frames kept.
 
     Returns
     -------
-    grams : (R, T, T) ndarray
-        With trace T, or zero where there is nothing to learn.
+    grams : (R, k, k) ndarray
+        Less the mean over all T frames, which then have trace T; zero where there is nothing to learn.
     spreads : (R,) ndarray
-        Variance of one coordinate, metres squared.
+        Variance of one coordinate over all frames, metres squared.
     """
     T = grams.shape[1]
-    traces = np.trace(grams, axis1=1, axis2=2)
-    spreads = traces / (T * np.maximum(sizes, 1e-12))
+    raw = np.trace(grams, axis1=1, axis2=2)
+    rows = grams.mean(axis=2)
+    mean = rows.mean(axis=1)
+    traces = raw - T * mean
     # rounding of inner products is no residual
-    alive = traces > 1e-12 * max(float(traces.max(initial=0.0)), 1e-300)
-    scale = np.where(alive, T / np.where(alive, traces, 1.0), 0.0)
-    return grams * scale[:, None, None], spreads * alive
+    alive = traces > 1e-12 * max(float(raw.max(initial=0.0)), 1e-300)
+    spreads = np.where(alive, traces, 0.0) / (T * np.maximum(sizes, 1e-12))
+    near = rows[:, some]
+    S = grams[:, some[:, None], some] - near[:, :, None] - near[:, None] + mean[:, None, None]
+    return S * np.where(alive, T / np.where(alive, traces, 1.0), 0.0)[:, None, None], spreads
 
 
 def spread_frames(T: int, most: int) -> IntArray:

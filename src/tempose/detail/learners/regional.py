@@ -53,18 +53,18 @@ class RegionalGaussianProcess:
         inputs = training.inputs
         features = Features.of(inputs, self.lags)
         X, groups, blocks = features(inputs), features.groups(inputs), features.blocks(inputs)
-        grams, spreads = unit_grams(training.centred(), training.sizes)
-        kernels: list[Kernel | None] = [None] * len(grams)
-        if len(X) < 3 or not spreads.any():
-            return KernelPredictor(features, kernels, X, spreads)
         known = self._known_past(inputs)
         some = known[spread_frames(len(known), self.judged)]
-        seen, S = X[some], grams[:, some[:, None], some]
+        S, spreads = unit_grams(training.grams, training.sizes, some)
+        kernels: list[Kernel | None] = [None] * len(S)
+        if len(X) < 3 or not spreads.any():
+            return KernelPredictor(features, kernels, X, spreads)
+        seen = X[some]
         whole = np.einsum("r,rij->ij", spreads * training.sizes, S)
         with one_blas_thread():
             start = _whole_body(seen, groups, blocks, whole * len(some) / np.trace(whole))
-            unknown, vague = features.unknown(inputs), np.zeros((len(grams), len(X)))
-            factors, distances = np.ones(len(grams)), GroupDistances(seen, groups)
+            unknown, vague = features.unknown(inputs), np.zeros((len(S), len(X)))
+            factors, distances = np.ones(len(S)), GroupDistances(seen, groups)
             for r in np.flatnonzero(spreads):
                 fit = fit_kernel(
                     distances, groups, S[r], starts=[start], prior=self.prior, iterations=self.iterations
@@ -72,7 +72,7 @@ class RegionalGaussianProcess:
                 kernels[r] = fit.kernel
                 vague[r] = _vagueness(fit.kernel, unknown)
                 factors[r] = variance_factor(fit.kernel, seen, S[r], inputs.chains[some])
-                self.progress(int(r) + 1, len(grams), "regions")
+                self.progress(int(r) + 1, len(S), "regions")
         return KernelPredictor(features, kernels, X, factors * spreads, self.inducing, vague)
 
     def _known_past(self, inputs: Inputs) -> IntArray:
