@@ -33,7 +33,8 @@ from tempose.detail.learners import (
 )
 
 MEMORY = RegionalGaussianProcess(lags=(0, 2, 4, 6, 9, 12))
-FINDS = ("gp", "regional-gp", "gplvm")
+FINDS = [PlainGaussianProcess(), RegionalGaussianProcess(), LatentLearner(dim=8, iterations=40)]
+finders = pytest.mark.parametrize("learner", FINDS, ids=lambda learner: learner.name)
 
 
 def without_velocity(motion: Motion) -> Motion:
@@ -47,11 +48,11 @@ def without_velocity(motion: Motion) -> Motion:
     return Still(motion.angles, motion.swings)
 
 
-@pytest.mark.parametrize("name", FINDS)
+@finders
 @pytest.mark.parametrize("law", [static, drag], ids=["static", "drag"])
-def test_two_frames_tell_pose_and_velocity(name, law):
+def test_two_frames_tell_pose_and_velocity(learner, law):
     motion = swinging(0, 200)
-    assert held_out_error(LEARNERS[name](), motion, law(motion)) < 0.15
+    assert held_out_error(learner, motion, law(motion)) < 0.15
 
 
 def test_a_pose_alone_does_not_tell_its_drag():
@@ -59,10 +60,10 @@ def test_a_pose_alone_does_not_tell_its_drag():
     assert held_out_error(RegionalGaussianProcess(lags=(0,)), without_velocity(motion), drag(motion)) > 0.7
 
 
-@pytest.mark.parametrize("name", FINDS)
-def test_trailing_by_a_frame_is_told_by_two_frames(name):
+@finders
+def test_trailing_by_a_frame_is_told_by_two_frames(learner):
     motion = swinging(1, 200)
-    assert held_out_error(LEARNERS[name](), motion, trailing(motion, 1.0)) < 0.25
+    assert held_out_error(learner, motion, trailing(motion, 1.0)) < 0.25
 
 
 def test_a_spring_needs_a_memory():
