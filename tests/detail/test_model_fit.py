@@ -106,6 +106,18 @@ def test_frames_come_one_by_one_as_well(model, rig) -> None:
         live.pose(np.zeros((2, 4)), np.zeros(3))
 
 
+def test_live_velocities_count_in_frames_of_the_training(model, rig) -> None:
+    vectors = np.linspace(0, 0.5, 12)[:, None, None] * np.array([[0.0, 0, 0], [0, 0, 1], [1, 0, 0]])
+    steady = SkeletonClip(rig.skin.skeleton, from_rotation_vector(vectors), np.zeros((12, 3)), 75.0)
+    batch, live = model.pose(steady).vertices, model.live(75.0)
+    frames = [np.array(live.pose(q, p)) for q, p in zip(steady.rotations, steady.root_position)]
+    kept = [6, 8, 10]  # rates of 75 and 30: every fifth moment of 150 is every other frame; others are mixed
+    assert_allclose(np.array(frames)[kept], batch[kept], atol=1e-5)
+    early = np.array([model.residual(steady)[t] for t in (2, 6)])
+    assert np.abs(early[0] - early[1]).max() > 1e-3
+    assert_allclose(frames[2], batch[2], atol=1e-5)
+
+
 @pytest.mark.parametrize("blending", ["linear", "dual-quaternion"])
 @pytest.mark.parametrize("basis", ["blended", "root", "world"])
 def test_every_basis_and_blending_gives_frames_back(basis, blending) -> None:
@@ -268,3 +280,11 @@ def test_clips_of_other_rates_are_brought_to_that_of_the_first(rig) -> None:
     assert model.report_["frames"] == 60
     assert [m.fps for m in model.motions_] == [30.0, 30.0]
     assert_allclose(model.motions_[1].rotations, motions[1].rotations[::2], atol=1e-6)
+
+
+def test_blocks_of_frames_remember_those_before(remembering, motion, monkeypatch) -> None:
+    whole = remembering.coefficients(motion)
+    variance = remembering.region_variance(motion)
+    monkeypatch.setattr("tempose.detail.prediction._FRAMES", 7)
+    assert_allclose(remembering.coefficients(motion), whole, rtol=1e-5, atol=1e-9)
+    assert_allclose(remembering.region_variance(motion), variance, rtol=1e-6)

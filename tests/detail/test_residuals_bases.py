@@ -128,3 +128,14 @@ def test_shares_are_weights_without_tails() -> None:
     assert_allclose(shares[1], weights[1])
     many = np.full((1, 40), 1 / 40)
     assert_allclose(region_shares(many, 0.05), many)
+
+
+@pytest.mark.parametrize("blending", ["linear", "dual-quaternion"])
+def test_signs_of_quaternions_mean_nothing(blending, rng) -> None:
+    rig = tube_rig(joints=5, blending=blending)
+    motion = swing(rig, 6, turning=6.0)
+    signs = rng.choice([-1.0, 1.0], size=(6, 5, 1))
+    other = replace(motion, rotations=signs * motion.rotations)
+    assert_allclose(vertex_bases(rig, other), vertex_bases(rig, motion), atol=1e-12)
+    V = rng.normal(size=(6, len(rig.skin.weights), 3))
+    assert_allclose(residuals(rig, other, V), residuals(rig, motion, V), atol=1e-12)
