@@ -43,7 +43,11 @@ TRUTH_COLUMNS = (
     "seconds",
 )
 ANIMAL_COLUMNS = ("clip", "frames", "vertices", "bones", "e_rms free", "e_rms skeleton", "rms % D", "seconds")
-SETTINGS = {"cheburashka": ((11, 4), (11, 11), (16, 8)), "usd-skel/lbs": ((3, 4),), "CesiumMan": ((19, 4),)}
+SETTINGS = {
+    "cheburashka": ((11, 4), (11, 11), (16, 8)),
+    "usd-skel/lbs": ((3, 4),),
+    "CesiumMan": ((19, 4), (24, 4)),
+}
 
 
 def apart(truth: Truth, found: Decomposition) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import pytest
 from bone_cases import chain, matched
 from numpy.testing import assert_allclose
 
-from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip
+from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
 from tempose.kinematics import bone_transforms, rest_transforms
 from tempose.kinematics.skinning import bake
 from tempose.rigging.decomposition import Decomposition
@@ -36,6 +36,18 @@ def test_neighbours_meet_where_the_joint_is(bent):
         assert pairs.apart[j - 1, j] < 0.1 * pairs.apart[j - 1, (j + 2) % 5]
     for array in (pairs.apart, pairs.stray, pairs.shared):
         assert_allclose(array, array.T, atol=1e-9)
+
+
+def test_joints_are_found_aside_of_what_both_bones_hold(bent):
+    skin, motion, _ = bent
+    aside = Skeleton(
+        skin.skeleton.names, skin.skeleton.parents, skin.skeleton.offsets + np.eye(5, 1) * [[0.05, 0.2, 0.0]]
+    )
+    pairs = pair_joints(as_bones(SkinnedMesh(skin.mesh, aside, skin.weights), motion))
+    P = rest_transforms(aside)[1]
+    found = np.array([pairs.places[j - 1, j] for j in range(1, 5)])
+    assert_allclose(found, P[1:], atol=0.02)
+    assert_allclose(pairs.stray[0, 1], np.hypot(0.05, 0.2), atol=0.02)
 
 
 def test_a_hinge_keeps_its_joint_in_the_mesh(bent):

@@ -14,7 +14,7 @@ _ABOVE = 1.2  # the error while bones are being added stands about this far abov
 def count_bones(
     frames: FloatArray,
     rest: FloatArray,
-    tolerance: float = 3e-3,
+    tolerance: float = 1.5e-3,
     influences: int = 4,
     *,
     most: int = 40,
@@ -28,7 +28,7 @@ def count_bones(
         Vertices in every frame.
     rest : (n, 3) float
         Vertices at rest.
-    tolerance : float, default 3e-3
+    tolerance : float, default 1.5e-3
         Root mean square distance in diagonals of the rest mesh.
     influences : int, default 4
         Most bones that a vertex may follow.

@@ -23,7 +23,7 @@ def auto_skin(
     bones: int | None = None,
     *,
     influences: int = 4,
-    tolerance: float = 3e-3,
+    tolerance: float = 1.5e-3,
     pull: float = 0.02,
     seed: int = 0,
     progress: Progress = silent,
@@ -38,7 +38,7 @@ def auto_skin(
         Number of bones; by default as few as bring free bones to `tolerance`.
     influences : int, default 4
         Most bones that a vertex may follow.
-    tolerance : float, default 3e-3
+    tolerance : float, default 1.5e-3
         Root mean square distance, in diagonals of the rest mesh, that sets the number of bones.
     pull : float, default 0.02
         How firmly joints stay where both bones hold the mesh, see `settle`.
