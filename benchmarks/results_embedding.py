@@ -23,9 +23,9 @@ COLUMNS = ("body", "median %", "worst %", "worst joint", "sides", "penalty", "up
 
 
 def seconds_of(mesh: Mesh) -> tuple[Embedding, float]:
-    start = time.perf_counter()
+    start = time.process_time()
     embedding = embed_skeleton(mesh)
-    return embedding, time.perf_counter() - start
+    return embedding, time.process_time() - start
 
 
 def sides_right(e: Embedding, joints: dict[str, np.ndarray]) -> bool:
