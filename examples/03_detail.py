@@ -16,20 +16,20 @@ from tempose.samples import MOTIONS, human_character, sample_clip
 
 OUT = Path("out")
 TRIANGLES = 4_000
+LONG = {"duration": 1.6, "fps": 30.0}
 
 
 def main() -> None:
     body = human_character(TRIANGLES)
-    speeds = (0.9, 1.5)
-    clips = [sample_clip("human", "walk", triangles=TRIANGLES, duration=1.6, speed=v) for v in speeds]
-    motions = [MOTIONS["human"]["walk"](body.skin.skeleton, duration=1.6, speed=v) for v in speeds]
+    clips = [sample_clip("human", "walk", triangles=TRIANGLES, speed=v, **LONG) for v in (0.9, 1.5)]
+    motions = [MOTIONS["human"]["walk"](body.skin.skeleton, speed=v, **LONG) for v in (0.9, 1.5)]
 
     # the motions of these clips are known; without them fit finds the skeleton's motion in the frames
     model = tempose.DetailModel("gp").fit(clips, Rig(body.skin, motions[0]), motions)
     for name, row in model.report_["heldout"].items():
         print(f"{name:>8}: frames left out are off by {row['rms_percent']:.2f} % of the diagonal")
 
-    between = MOTIONS["human"]["walk"](body.skin.skeleton, duration=1.6, speed=1.2)
+    between = MOTIONS["human"]["walk"](body.skin.skeleton, speed=1.2, **LONG)
     walk = model.pose(between)
     stiff = model.pose(between, damp=0.2)
     taller = model.pose(between, proportions={"thigh": 1.15, "shin": 1.15})
@@ -42,6 +42,7 @@ def main() -> None:
         5,
         ("three-quarter",),
         cell=200,
+        track=True,
         names=["skin alone", "with detail", "detail damped", "longer legs"],
     )
     tempose.render.save_png(sheet, OUT / "walk.png")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from tempose.detail.learners.latent_predictor import LatentPredictor
 from tempose.detail.training import Inputs, Predictor
 from tempose.typing import FloatArray, IntArray
 
@@ -21,9 +21,9 @@ class LatentPlane:
     """Two directions in which motion varies most, and the spread of predictions over them."""
 
     points: FloatArray
-    """(T, 2) where the frames of the training lie."""
+    """(k, 2) where the frames of the training lie."""
     chains: IntArray
-    """(T,) which clip every frame is from."""
+    """(k,) which clip every frame is from."""
     x: FloatArray
     """(w,) places of the map, ascending."""
     y: FloatArray
@@ -44,7 +44,7 @@ def latent_plane(
     Parameters
     ----------
     predictor : Predictor
-        A fitted learner; one with a latent space (T, q) shows that.
+        A fitted learner; one with a latent space shows that.
     inputs : Inputs
         The T frames of its training.
     sizes : (R,) float
@@ -62,9 +62,9 @@ def latent_plane(
     A place of the plane leaves all other directions open. They are filled as the frames nearby have them, so
     that the map is small along the path of the motion and grows away from it.
     """
-    found: Any = getattr(predictor, "latent", None)
-    asked: Any = getattr(predictor, "latent_variance", None)
-    Z = _columns(inputs) if asked is None else np.asarray(found, dtype=np.float64)
+    if isinstance(predictor, LatentPredictor) and predictor.process is not None:
+        return _of_latent(predictor, inputs.chains, resolution)
+    Z = _columns(inputs)
     mean = Z.mean(axis=0)
     _, s, Vt = np.linalg.svd(Z - mean, full_matrices=False)
     axes = np.zeros((2, Z.shape[1]))
@@ -73,16 +73,18 @@ def latent_plane(
     x, y = _grid(points, resolution)
     places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     full = mean + places @ axes + _left_out(places, points, Z - mean - points @ axes)
-    if asked is None:
-        variance = predictor.mix(_inputs(full, inputs)).variance
-    else:
-        variance = np.asarray(asked(full), dtype=np.float64)
-    if variance.ndim == 2:
-        share = sizes / sizes.sum() if variance.shape[1] == len(sizes) else np.ones(1)
-        variance = variance @ share
-    spread = np.sqrt(np.maximum(variance, 0.0)).reshape(len(y), len(x))
+    variance = predictor.mix(_inputs(full, inputs)).variance
+    share = sizes / sizes.sum() if variance.shape[1] == len(sizes) else np.ones(1)
+    spread = np.sqrt(np.maximum(variance @ share, 0.0)).reshape(len(y), len(x))
     shown = float((s[:2] ** 2).sum() / max(float((s**2).sum()), 1e-300))
-    return LatentPlane(points, inputs.chains, x, y, spread, shown, asked is not None)
+    return LatentPlane(points, inputs.chains, x, y, spread, shown, False)
+
+
+def _of_latent(predictor: LatentPredictor, chains: IntArray, resolution: int) -> LatentPlane:
+    found = predictor.plane(size=resolution)
+    spread = np.sqrt(predictor.basis.variance * np.maximum(found.variance, 0.0))
+    kept = chains[predictor.basis.frames]
+    return LatentPlane(found.points, kept, found.x, found.y, spread, found.share, True)
 
 
 def _columns(inputs: Inputs) -> FloatArray:
