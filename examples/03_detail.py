@@ -8,6 +8,7 @@ Put your own clip in place of the built-in ones, with a skeleton found in it::
 """
 
 from pathlib import Path
+from typing import Any
 
 import tempose
 from tempose.detail.pictures import skin_clip
@@ -16,7 +17,7 @@ from tempose.samples import MOTIONS, human_character, sample_clip
 
 OUT = Path("out")
 TRIANGLES = 4_000
-LONG = {"duration": 1.6, "fps": 30.0}
+LONG: dict[str, Any] = {"duration": 1.6, "fps": 30.0}
 
 
 def main() -> None:
