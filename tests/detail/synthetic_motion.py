@@ -119,17 +119,18 @@ def bent_sheet(motion: Motion) -> np.ndarray:
     return spread_out(np.tanh(2 * v) * (1 + 0.7 * p))
 
 
-def training_of(motion: Motion, D: np.ndarray) -> Training:
+def training_of(motion: Motion, D: np.ndarray, fps: float = FPS) -> Training:
     """Inputs and Gram matrix, one region."""
     T = len(D)
-    inputs = Inputs(motion.angles, motion.velocity, np.zeros((T, 0)), np.zeros(T, dtype=np.int64))
+    chains = np.zeros(T, dtype=np.int64)
+    inputs = Inputs(motion.angles, motion.velocity, np.zeros((T, 0)), chains, fps=fps)
     return Training(inputs, (D @ D.T)[None], np.array([float(D.shape[1])]))
 
 
-def held_out_error(learner: Learner, motion: Motion, D: np.ndarray) -> float:
+def held_out_error(learner: Learner, motion: Motion, D: np.ndarray, fps: float = FPS) -> float:
     """Rms error on the last 30 %, over the rms of the detail there."""
     T = len(D)
     cut = int(0.7 * T)
     test = np.arange(cut, T)
-    found = evaluate(learner, training_of(motion, D), np.arange(cut), test)
+    found = evaluate(learner, training_of(motion, D, fps), np.arange(cut), test)
     return found.rms / np.sqrt(3 * np.mean(D[test] ** 2))

@@ -41,7 +41,7 @@ def test_units_of_residuals_scale_the_variance_and_nothing_else(learner, trainin
 @named
 def test_frames_of_the_training_are_nearly_met(learner, training):
     mixture = learner.fit(training).mix(training.inputs)
-    centred = training.centred()[0]
+    centred = training.centred_gram
     lines = mixture.weights[0] - np.eye(60)
     assert np.trace(lines @ centred @ lines.T) < 0.05 * np.trace(centred)
 
@@ -126,9 +126,9 @@ def test_two_clips_do_not_depend_on_which_comes_first(training, learner):
     one, two = (learner.fit(t).mix(inputs) for t in (first, second))
     # the same minimum is reached by other rounding
     assert_allclose(
-        two.weights[0][:, np.argsort(halves)] @ training.centred()[0],
-        one.weights[0] @ training.centred()[0],
-        atol=0.05 * np.trace(training.centred()[0]) / 60,
+        two.weights[0][:, np.argsort(halves)] @ training.centred_gram,
+        one.weights[0] @ training.centred_gram,
+        atol=0.05 * np.trace(training.centred_gram) / 60,
     )
 
 

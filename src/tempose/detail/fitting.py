@@ -95,7 +95,7 @@ def gather(
     grams, sizes = region_grams(D, learned)
     training = Training(training_inputs(fitted), grams, sizes)
     clock("inner products")
-    detail = compress(D, training.centred().sum(axis=0), tolerance / 100 * lean.skin.mesh.diagonal)
+    detail = compress(D, training.centred_gram, tolerance / 100 * lean.skin.mesh.diagonal)
     coarse = None
     if control is not None:
         coarse = coarse_basis(detail, mean, control.collapses.matrix)

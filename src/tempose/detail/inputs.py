@@ -40,10 +40,9 @@ def motion_inputs(
     turns = multiply(conjugate(rest), motion.rotations)[:, 1:]
     angles = unwrap(to_rotation_vector(turns), near)
     velocity = _velocity(turns, angles, motion.fps / (fps or motion.fps))
-    T = len(angles)
-    return Inputs(
-        angles, velocity, np.zeros((T, 0)), np.full(T, chain, dtype=np.int64), motion.skeleton.names[1:]
-    )
+    T, names = len(angles), motion.skeleton.names[1:]
+    chains = np.full(T, chain, dtype=np.int64)
+    return Inputs(angles, velocity, np.zeros((T, 0)), chains, names, fps or motion.fps)
 
 
 def joined_inputs(chains: list[Inputs]) -> Inputs:
@@ -52,7 +51,7 @@ def joined_inputs(chains: list[Inputs]) -> Inputs:
     Parameters
     ----------
     chains : list of Inputs
-        Of the same joints; at least one.
+        Of the same joints and rate; at least one.
 
     Returns
     -------
@@ -65,6 +64,7 @@ def joined_inputs(chains: list[Inputs]) -> Inputs:
         np.concatenate([c.extra for c in chains]),
         np.repeat(np.arange(len(chains)), [len(c) for c in chains]),
         chains[0].joints,
+        chains[0].fps,
     )
 
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.detail.basis import DetailBasis
+from tempose.detail.learners.features import frames_remembered
 from tempose.detail.training import Inputs, Predictor
 from tempose.typing import FloatArray
 
 _FRAMES = 256
 """Frames asked for at a time: their weights of all training frames are held at once, for every region."""
 _MEMORY = 64
-"""Frames before them that learners may look back to."""
-_NEAR = 5
-"""Frames on either side that are no evidence of how far poses of a clip are from one another."""
+"""Frames before them that any learner may look back to."""
+_NEAR = 1 / 6
+"""Seconds on either side that are no evidence of how far poses of a clip are from one another."""
 
 _SPREAD = 0.3
 """Part of the distance from the mean pose that two poses may always be apart and still be alike."""
@@ -41,7 +42,7 @@ def coefficients(predictor: Predictor, detail: DetailBasis, inputs: Inputs, n_re
     Q, K = len(inputs), detail.n_modes
     C = np.zeros((Q, n_regions, 1 + K), np.float32)
     C[..., 0] = detail.step
-    for some, seen, skip in _blocks(inputs):
+    for some, seen, skip in _blocks(predictor, inputs):
         weights = predictor.mix(seen).weights[:, skip:]
         C[some, :, 1:] = detail.step * (weights @ detail.coordinates).transpose(1, 0, 2)
     return C
@@ -65,15 +66,16 @@ def variances(predictor: Predictor, inputs: Inputs, n_regions: int) -> FloatArra
         Variance of one coordinate, metres squared.
     """
     V = np.zeros((len(inputs), n_regions))
-    for some, seen, skip in _blocks(inputs):
+    for some, seen, skip in _blocks(predictor, inputs):
         V[some] = predictor.mix(seen).variance[skip:]
     return V
 
 
-def _blocks(inputs: Inputs) -> list[tuple[slice, Inputs, int]]:
+def _blocks(predictor: Predictor, inputs: Inputs) -> list[tuple[slice, Inputs, int]]:
+    memory = max(_MEMORY, frames_remembered(predictor))
     found: list[tuple[slice, Inputs, int]] = []
     for start in range(0, len(inputs), _FRAMES):
-        stop, first = min(start + _FRAMES, len(inputs)), max(start - _MEMORY, 0)
+        stop, first = min(start + _FRAMES, len(inputs)), max(start - memory, 0)
         found.append((slice(start, stop), inputs.take(np.arange(first, stop)), start - first))
     return found
 
@@ -117,7 +119,8 @@ def usual_distance(inputs: Inputs) -> float:
         95th percentile, radians; at least `_SPREAD` of their distance from the mean pose, since a cycle that
         repeats exactly does not make every other pose a stranger.
     """
-    found = nearest_distances(inputs, inputs, min(_NEAR, (len(inputs) - 1) // 4))
+    near = max(round(_NEAR * inputs.fps), 1)
+    found = nearest_distances(inputs, inputs, min(near, (len(inputs) - 1) // 4))
     found = found[np.isfinite(found)]
     usual = float(np.percentile(found, 95)) if len(found) else 0.0
     spread = np.sqrt(inputs.angles.var(axis=0).sum())

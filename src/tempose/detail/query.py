@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -90,9 +90,7 @@ def make_query(rig: Rig, motion: SkeletonClip, fps: float, near: FloatArray) -> 
     part = np.clip(moment - before, 0.0, 1.0)
     part[part < _SNAP * T] = 0.0
     after = np.minimum(before + 1, Q - 1)
-    chained = Inputs(
-        inputs.angles[order], inputs.velocity[order], inputs.extra[order], order % m, inputs.joints
-    )
+    chained = replace(inputs.take(order), chains=order % m)
     return Query(chained, rank[before], rank[after], part)
 
 

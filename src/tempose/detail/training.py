@@ -24,6 +24,8 @@ class Inputs:
     """(T,) which clip every frame is from; frames of one clip follow one another."""
     joints: tuple[str, ...] = ()
     """K names."""
+    fps: float = 30.0
+    """Rate of the training: how long the frame is in which velocities and memories are counted."""
 
     def __len__(self) -> int:
         return len(self.angles)
@@ -45,7 +47,13 @@ class Inputs:
         breaks = np.diff(frames) != 1
         breaks |= np.diff(self.chains[frames]) != 0
         chains = np.concatenate([[0], np.cumsum(breaks)])[: len(frames)]
-        return Inputs(self.angles[frames], self.velocity[frames], self.extra[frames], chains, self.joints)
+        return replace(
+            self,
+            angles=self.angles[frames],
+            velocity=self.velocity[frames],
+            extra=self.extra[frames],
+            chains=chains,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +73,11 @@ class Training:
         """(T, T) inner products over the whole mesh."""
         return self.grams.sum(axis=0)
 
+    @property
+    def centred_gram(self) -> FloatArray:
+        """(T, T) the same of the residuals less their mean over the frames."""
+        return centred(self.gram)
+
     def take(self, frames: IntArray) -> Training:
         """Return the training restricted to some frames.
 
@@ -78,18 +91,25 @@ class Training:
         Training
             Those frames.
         """
-        return replace(self, inputs=self.inputs.take(frames), grams=self.grams[:, frames][:, :, frames])
+        frames = np.asarray(frames)
+        return replace(self, inputs=self.inputs.take(frames), grams=self.grams[:, frames[:, None], frames])
 
-    def centred(self) -> FloatArray:
-        """Gram matrices of the residuals less their mean over the frames.
 
-        Returns
-        -------
-        (R, T, T) ndarray
-            Metres squared.
-        """
-        rows = self.grams - self.grams.mean(axis=1, keepdims=True)
-        return rows - rows.mean(axis=2, keepdims=True)
+def centred(gram: FloatArray) -> FloatArray:
+    """Take the mean over the frames off what inner products were taken of.
+
+    Parameters
+    ----------
+    gram : (T, T) float
+        Inner products of T frames.
+
+    Returns
+    -------
+    (T, T) ndarray
+        Inner products of the frames less their mean.
+    """
+    rows = gram - gram.mean(axis=0)
+    return rows - rows.mean(axis=1, keepdims=True)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,12 +8,12 @@ import numpy as np
 from scipy.stats import rankdata
 
 from tempose.detail.evaluation.errors import gram_errors, mixed_residuals
-from tempose.detail.learners.features import frame_ages
+from tempose.detail.learners.features import frame_ages, frames_remembered
 from tempose.detail.training import Inputs, Learner, Mixture, Predictor, Training
 from tempose.typing import FloatArray, IntArray
 
 _PAST = 32
-"""Frames before those predicted that learners may look back to."""
+"""Frames before those predicted that any learner may look back to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +106,8 @@ def evaluate(
 def _with_past(predictor: Predictor, inputs: Inputs, test: IntArray) -> Mixture:
     """Predict frames; what came before them is known, as it is when a motion is posed."""
     ages = frame_ages(inputs.chains)[test]
-    past = test[:, None] - np.minimum(ages[:, None], np.arange(_PAST + 1))
+    memory = max(_PAST, frames_remembered(predictor))
+    past = test[:, None] - np.minimum(ages[:, None], np.arange(memory + 1))
     frames = np.unique(past)
     mixture = predictor.mix(inputs.take(frames))
     rows = np.searchsorted(frames, test)

@@ -30,7 +30,7 @@ class MeanLearner:
             Predicts the mean.
         """
         T = len(training.inputs)
-        spread = np.trace(training.centred(), axis1=1, axis2=2).sum() / (T * training.sizes.sum())
+        spread = np.trace(training.centred_gram) / (T * training.sizes.sum())
         return MeanPredictor(T, float(spread))
 
 

@@ -156,6 +156,22 @@ class TwoFrames:
         return np.concatenate([inputs.angles.reshape(Q, -1), before.reshape(Q, -1)], axis=1)
 
 
+def frames_remembered(predictor: object) -> int:
+    """Count the frames that a predictor looks back to.
+
+    Parameters
+    ----------
+    predictor : object
+        A fitted learner.
+
+    Returns
+    -------
+    int
+        Frames of the training; 0 for one that looks at velocities of the frame alone.
+    """
+    return max(getattr(getattr(predictor, "features", None), "lags", (0,)))
+
+
 def past(values: FloatArray, chains: IntArray, lag: int) -> FloatArray:
     """Look back in time, never into another clip.
 

@@ -107,9 +107,7 @@ class LatentLearner:
         T = len(training.inputs)
         frames = spread_frames(T, self.judged)
         inputs = rows_of(training.inputs, frames)
-        residuals, variance = unit_gram(
-            _centred(training.gram)[np.ix_(frames, frames)] / training.sizes.sum()
-        )
+        residuals, variance = unit_gram(training.centred_gram[np.ix_(frames, frames)] / training.sizes.sum())
         residuals = _short(residuals)
         basis = TrainingFrames(frames, T, variance, self._notes(T, len(frames)))
         _, moved = unit_gram(centred_gram(TwoFrames()(inputs)))
@@ -173,11 +171,6 @@ def _short(values: FloatArray) -> FloatArray:
     return values.astype(np.float32).astype(np.float64)
 
 
-def _centred(gram: FloatArray) -> FloatArray:
-    rows = gram - gram.mean(axis=0)
-    return rows - rows.mean(axis=1, keepdims=True)
-
-
 def rows_of(inputs: Inputs, frames: IntArray) -> Inputs:
     """Take frames of each clip as if they followed one another.
 
@@ -193,10 +186,4 @@ def rows_of(inputs: Inputs, frames: IntArray) -> Inputs:
     Inputs
         Those frames, in the chains they were in.
     """
-    return Inputs(
-        inputs.angles[frames],
-        inputs.velocity[frames],
-        inputs.extra[frames],
-        inputs.chains[frames],
-        inputs.joints,
-    )
+    return replace(inputs.take(frames), chains=inputs.chains[frames])

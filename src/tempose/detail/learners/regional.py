@@ -13,6 +13,8 @@ from tempose.detail.training import Inputs, Training
 from tempose.regression import GroupDistances, Kernel, fit_kernel, one_blas_thread
 from tempose.typing import FloatArray, IntArray, Progress, silent
 
+_LAGS_PER_SECOND = 30
+
 
 @dataclass(frozen=True)
 class RegionalGaussianProcess:
@@ -23,7 +25,8 @@ class RegionalGaussianProcess:
     """
 
     lags: tuple[int, ...] = (0, 2, 4, 6, 9, 12)
-    """Frames back at which velocities are seen, ascending: cloth that swings remembers that much at 30 Hz."""
+    """Thirtieths of a second back at which velocities are seen, ascending: cloth that swings remembers that
+    much. At other rates the nearest frames are taken."""
     prior: float = 0.5
     """Weight of the squared distance of logarithmic scales from those of the whole body."""
     iterations: int = 8
@@ -51,9 +54,9 @@ class RegionalGaussianProcess:
             One mixture for each region.
         """
         inputs = training.inputs
-        features = Features.of(inputs, self.lags)
+        features = Features.of(inputs, lags_at(self.lags, inputs.fps))
         X, groups, blocks = features(inputs), features.groups(inputs), features.blocks(inputs)
-        known = self._known_past(inputs)
+        known = _known_past(inputs, features.lags[-1])
         some = known[spread_frames(len(known), self.judged)]
         S, spreads = unit_grams(training.grams, training.sizes, some)
         kernels: list[Kernel | None] = [None] * len(S)
@@ -75,10 +78,29 @@ class RegionalGaussianProcess:
                 self.progress(int(r) + 1, len(S), "regions")
         return KernelPredictor(features, kernels, X, factors * spreads, self.inducing, vague)
 
-    def _known_past(self, inputs: Inputs) -> IntArray:
-        """Frames whose earlier velocities are all known, unless too few would be left."""
-        known = np.flatnonzero(frame_ages(inputs.chains) >= self.lags[-1])
-        return known if len(known) >= max(3, len(inputs) // 2) else np.arange(len(inputs))
+
+def lags_at(lags: tuple[int, ...], fps: float) -> tuple[int, ...]:
+    """Turn times into frames.
+
+    Parameters
+    ----------
+    lags : tuple of int
+        Thirtieths of a second, ascending.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    tuple of int
+        Frames, ascending; fewer where several fall on one.
+    """
+    return tuple(sorted({round(lag * fps / _LAGS_PER_SECOND) for lag in lags}))
+
+
+def _known_past(inputs: Inputs, lag: int) -> IntArray:
+    """Frames whose earlier velocities are all known, unless too few would be left."""
+    known = np.flatnonzero(frame_ages(inputs.chains) >= lag)
+    return known if len(known) >= max(3, len(inputs) // 2) else np.arange(len(inputs))
 
 
 def _whole_body(X: FloatArray, groups: IntArray, blocks: IntArray, S: FloatArray) -> Kernel:

@@ -40,7 +40,7 @@ class RidgeLearner:
         features = Features.of(inputs, per_joint=False)
         weight = np.where(features.blocks(inputs) == 1, self.momentum, 1.0)
         X = features(inputs) * weight
-        S = training.centred().sum(axis=0)
+        S = training.centred_gram
         wrong = self._left_out(X, S, training)
         best = int(wrong.argmin())
         regression = RidgeRegression(X)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tempose._validate import as_floats
+from tempose.detail.learners.features import frames_remembered
 from tempose.detail.learners.kernel_predictor import KernelPredictor
 from tempose.detail.posing._tree_kernels import (
     dual_row,
@@ -55,7 +56,8 @@ class LivePoser:
         self._rest_back, self._names = conjugate(rest), skeleton.names[1:]
         dual = rig.blending == "dual-quaternion"
         self._fill = dual_row if dual else linear_row
-        self._pace = 1.0 if fps is None else fps / model.motions_[0].fps
+        self._fps = model.motions_[0].fps
+        self._pace = 1.0 if fps is None else fps / self._fps
         self._near = model.mean_angles
         J, R = skeleton.n_joints, len(model.regions)
         self._turns, self._shifts = np.zeros((J, 4)), np.zeros((J, 3))
@@ -64,8 +66,7 @@ class LivePoser:
         self._C = np.zeros((R, self._poser.columns), np.float32)
         self._C[:, 0] = model.detail_.step
         self._predict = _predictor(model)
-        features = getattr(model.predictor_, "features", None)
-        self._memory = 1 + max(getattr(features, "lags", (0,)))
+        self._memory = 1 + frames_remembered(model.predictor_)
         self._V = np.zeros((len(rig.skin.mesh.vertices), 3), np.float32)
         self.reset()
 
@@ -141,7 +142,8 @@ class LivePoser:
         rows = [row for row in reversed(rows) if row >= 0]
         angles, velocity = (np.stack([part[row] for row in rows]) for part in (self._angles, self._velocity))
         Q = len(rows)
-        return Inputs(angles, velocity, np.zeros((Q, 0)), np.zeros(Q, dtype=np.int64), self._names)
+        chains = np.zeros(Q, dtype=np.int64)
+        return Inputs(angles, velocity, np.zeros((Q, 0)), chains, self._names, self._fps)
 
 
 def _predictor(model: DetailModel) -> Callable[[Inputs], FloatArray]:
