@@ -121,6 +121,24 @@ def test_a_motion_goes_out_is_edited_and_detail_follows(run: Run, job: Path) -> 
     assert moved[late, tube_mesh().vertices[:, 1] > 0.9].min() > 0.02
 
 
+def test_a_rig_without_detail_is_posed_as_well(run: Run, job: Path) -> None:
+    rig = tempose.Rig.load("rig.tempose")
+    assert run("rig", "export", "rig.tempose", "-o", "out/m.bvh").code == 0
+    assert run("detail", "pose", "rig.tempose", "out/m.bvh", "-o", "out/skin.npz").code == 0
+    assert_allclose(tempose.load("out/skin.npz").vertices, rig.vertices(), atol=1e-5)
+    Path("sizes.json").write_text('{"middle": 1.3}')
+    sized = ("--proportions", "sizes.json", "-o", "out/long.npz")
+    assert run("detail", "pose", "rig.tempose", *sized).code == 0
+    longer = tempose.rigging.change_proportions(rig, {"middle": 1.3})
+    assert_allclose(tempose.load("out/long.npz").vertices, longer.vertices(), atol=1e-5)
+
+
+@pytest.mark.parametrize("words", [("--strength", "0.5"), ("--damp", "0.1"), ("--mask", "middle")])
+def test_a_rig_has_no_detail_to_edit(run: Run, job: Path, words: tuple) -> None:
+    line = refused(run, "detail", "pose", "rig.tempose", "-o", "out/x.npz", *words)
+    assert words[0] in line and "without detail" in line
+
+
 def test_without_a_motion_the_clip_comes_back(run: Run, job: Path) -> None:
     assert run(*POSE, "-o", "out/back.npz").code == 0
     error = tempose.metrics.compare(
@@ -262,7 +280,7 @@ def test_fewer_frames_than_latent_dimensions(run: Run, job: Path, learner: str) 
     assert "frames" in ran.err.split("mesh clip")[-1]
 
 
-@pytest.mark.parametrize("words", [("rig.tempose",), ("none.tempose",), ("out",), ("clip.npz",)])
+@pytest.mark.parametrize("words", [("none.tempose",), ("out",), ("clip.npz",)])
 def test_what_is_no_model(run: Run, job: Path, words: tuple) -> None:
     assert words[0] in refused(run, "detail", "pose", *words, "-o", "out/x.npz")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,13 +17,14 @@ from tempose.cli.console import note, progress_bar, writing
 from tempose.cli.detail_words import parse_strength, read_mask
 from tempose.cli.options import Clip, FromFps, FromUnit, FromUp, Tolerance, UnitOption, Up, check_out
 from tempose.cli.report import make_report, write_report
-from tempose.cli.rig_files import load_detail, load_rig
+from tempose.cli.rig_files import load_detail, load_rig, model_kind
 from tempose.cli.signals_files import check_folder
 from tempose.cli.signals_options import merged_options
 
 if TYPE_CHECKING:
     from tempose.clips import MeshClip, SkeletonClip
     from tempose.detail import DetailModel
+    from tempose.rigging import Rig
 
 Out = Annotated[
     Path,
@@ -55,7 +57,7 @@ def pose(  # numpydoc ignore=PR01
     unit: UnitOption = None,
     tolerance: Tolerance = None,
 ) -> None:
-    """Pose a model by a motion of its skeleton: edited in another package, or of another clip."""
+    """Pose a model, or a rig without detail, by a motion: edited in another package, or of another clip."""
     began = time.perf_counter()
     options = merged_options(locals(), "model_file", "motion_file", "out", "report", "began")
     check_out(out)
@@ -68,18 +70,20 @@ def pose(  # numpydoc ignore=PR01
     strengths = parse_strength(strength)
     factors = None if proportions is None else read_table(proportions)
     names = _names(mapping)
-    model = load_detail(model_file)
+    model = _load_model(model_file, {"--strength": strength, "--damp": damp, "--mask": mask})
     settings: dict[str, Any] = {"strength": strengths, "damp": damp, "mask": read_mask(mask)}
     reading = {"up": from_up, "unit": from_unit, "fps": from_fps, "clip": clip}
     motion, warnings = None, list[str]()
     if motion_file is not None:
-        motion, warnings = _load_motion(motion_file, model, names, missing_rest, reading)
+        rig = model if isinstance(model, tempose.Rig) else model.rig_
+        motion, warnings = _load_motion(motion_file, rig, names, missing_rest, reading)
         warnings += _far(model, motion)
     with progress_bar() as progress:
         progress(0, 0, "posing")
-        if factors is not None:
-            settings["proportions"] = factors
-        posed = model.pose(motion, **settings)
+        if isinstance(model, tempose.Rig):
+            posed = _pose_rig(model, motion, factors)
+        else:
+            posed = model.pose(motion, proportions=factors, **settings)
     _write(posed, out, up, unit, tolerance)
     if report is not None:
         inputs = {"model": str(model_file), "motion": motion_file, "out": str(out)}
@@ -93,8 +97,27 @@ def _names(path: Path | None) -> dict[str, str] | None:
     return None if path is None else read_mapping(path)
 
 
+def _load_model(path: Path, edits: dict[str, Any]) -> DetailModel | Rig:
+    """Load detail, or a rig where no edit asks for detail."""
+    if model_kind(path) != "rig":
+        return load_detail(path)
+    for option, value in edits.items():
+        if value is not None:
+            raise ValueError(
+                f"{path}: a rig without detail, {option} has nothing to act on; see `tempose detail fit`"
+            )
+    return load_rig(path)
+
+
+def _pose_rig(rig: Rig, motion: SkeletonClip | None, factors: Any) -> MeshClip:
+    from tempose.rigging import change_proportions
+
+    rig = rig if motion is None else replace(rig, motion=motion)
+    return (rig if factors is None else change_proportions(rig, factors)).clip()
+
+
 def _load_motion(
-    path: str, model: DetailModel, mapping: dict[str, str] | None, rest: bool, reading: dict[str, Any]
+    path: str, rig: Rig, mapping: dict[str, str] | None, missing_rest: bool, reading: dict[str, Any]
 ) -> tuple[SkeletonClip, list[str]]:
     from tempose.rigging.motions import matched_motion
 
@@ -104,7 +127,9 @@ def _load_motion(
         motion = tempose.formats.load_skeleton_clip(path, **reading)
         note(tempose.formats.describe(motion))
     try:
-        found = matched_motion(model.rig_.skin.skeleton, motion, mapping, missing="rest" if rest else "error")
+        found = matched_motion(
+            rig.skin.skeleton, motion, mapping, missing="rest" if missing_rest else "error"
+        )
     except ValueError as error:
         way = "" if mapping else "; --map takes a file of them, --missing-rest leaves joints at rest"
         raise ValueError(f"{path}: {error}{way}") from None
@@ -113,7 +138,9 @@ def _load_motion(
     return found.motion, list(found.warnings)
 
 
-def _far(model: DetailModel, motion: SkeletonClip) -> list[str]:
+def _far(model: DetailModel | Rig, motion: SkeletonClip) -> list[str]:
+    if isinstance(model, tempose.Rig):
+        return []
     far = np.asarray(model.far(motion))
     share = float((far > 1).mean())
     if share == 0:

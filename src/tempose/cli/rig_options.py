@@ -89,7 +89,12 @@ DetailPlot = Annotated[
         help="Write pictures: latent space, errors of every frame, variance, sheets.",
     ),
 ]
-ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", help="What `tempose detail fit` wrote.")]
+ModelFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="MODEL", help="What `tempose detail fit` wrote; or a rig, whose skin alone is posed."
+    ),
+]
 Motion = Annotated[
     str | None,
     typer.Argument(
