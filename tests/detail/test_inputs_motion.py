@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from clothed_tube import swing, tube_rig
@@ -10,6 +12,7 @@ from numpy.testing import assert_allclose
 from tempose.clips import Skeleton, SkeletonClip
 from tempose.clips.resample import resample
 from tempose.detail import motion_inputs
+from tempose.detail.checks import check_joints
 from tempose.detail.fitting import training_inputs
 from tempose.detail.inputs import nearest_turn, unwrap
 from tempose.rotations import from_rotation_vector, multiply
@@ -88,3 +91,22 @@ def test_one_pose_has_one_name_in_all_clips() -> None:
     inputs = training_inputs((first, later))
     assert list(np.unique(inputs.chains, return_counts=True)[1]) == [40, 20]
     assert np.abs(inputs.angles[40:] - inputs.angles[20:40]).max() < 1e-9
+
+
+def test_motions_that_mean_another_pose_are_refused() -> None:
+    rig = tube_rig()
+    motion = swing(rig, 3)
+    check_joints(rig, motion)
+    longer = replace(motion.skeleton, offsets=1.2 * motion.skeleton.offsets)
+    check_joints(rig, replace(motion, skeleton=longer))
+    rest = np.tile([1.0, 0, 0, 0], (3, 1))
+    rest[2] = from_rotation_vector(np.array([0.0, 0, np.radians(30)]))
+    turned = replace(motion, skeleton=replace(motion.skeleton, rest_rotations=rest))
+    with pytest.raises(ValueError, match=r"moved must rest .*'joint_2' turned by 30 deg.*match_motion"):
+        check_joints(rig, turned, "moved")
+    forked = replace(motion, skeleton=replace(motion.skeleton, parents=np.array([-1, 0, 0])))
+    with pytest.raises(ValueError, match="hang 'joint_2'"):
+        check_joints(rig, forked)
+    other = replace(motion, skeleton=replace(motion.skeleton, names=("joint_0", "a", "b")))
+    with pytest.raises(ValueError, match="unknown 'a'"):
+        check_joints(rig, other)

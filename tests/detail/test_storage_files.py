@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from hypothesis.extra import numpy as arrays_of
 from numpy.testing import assert_allclose, assert_array_equal
 from safetensors.numpy import load_file, save_file
 
+from tempose.clips import Source
 from tempose.detail import LEARNERS, DetailModel
 from tempose.detail.basis import compress
 from tempose.detail.saving.lean import lean_weights
@@ -201,3 +203,15 @@ def test_only_learners_are_taken_apart() -> None:
     back = from_arrays(json.loads(json.dumps(tree)), arrays)
     assert back[:4] == (1, "b", None, 2.5)
     assert_array_equal(back[4], np.eye(2))
+
+
+def test_bone_lengths_and_origin_of_every_motion_are_kept(case, tmp_path) -> None:
+    rig, motions, clips = case
+    longer = replace(motions[1].skeleton, offsets=1.25 * motions[1].skeleton.offsets)
+    other = replace(motions[1], skeleton=longer, name="walk", source=Source("walk.bvh", "bvh"))
+    model = DetailModel("mean", folds=0).fit(clips, rig, [motions[0], other])
+    back = DetailModel.load(model.save(tmp_path / "tube.tempose"))
+    for one, two in zip(model.motions_, back.motions_):
+        assert_array_equal(one.skeleton.offsets, two.skeleton.offsets)
+        assert (one.name, one.source, one.fps) == (two.name, two.source, two.fps)
+    assert_array_equal(model.pose(model.motions_[1]).vertices, back.pose(back.motions_[1]).vertices)

@@ -140,3 +140,14 @@ def test_captures_come_back(tmp_path, data_folder):
         there = joints_by_name(clip, clip.skeleton.names)
         off = joints_by_name(back, plain(clip.skeleton.names)) - there
         assert np.abs(off).max() < 1e-6
+
+
+def test_names_that_become_alike_get_numbers(tmp_path):
+    names = ("root", "left arm", "left_arm", "left{arm")
+    skeleton = Skeleton(names, np.array([-1, 0, 0, 0]), np.eye(4, 3))
+    write_bvh(
+        tmp_path / "a.bvh", SkeletonClip(skeleton, np.tile([1.0, 0, 0, 0], (1, 4, 1)), np.zeros((1, 3)))
+    )
+    back = formats.load(tmp_path / "a.bvh")
+    assert back.skeleton.names == ("root", "left_arm", "left_arm_2", "left_arm_3")
+    assert back.source.notes == ()

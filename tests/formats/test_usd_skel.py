@@ -216,3 +216,19 @@ def test_blend_shapes_are_baked_as_their_makers_did(data_folder):
     folder = data_folder("usd-skel")
     ours, theirs = (formats.load_clip(folder / f"blendshapes{s}.usda") for s in ("", ".baked"))
     assert_array_equal(ours.vertices, theirs.vertices)
+
+
+def test_joints_that_the_skeleton_lacks_are_refused(tmp_path):
+    from pxr import Usd, UsdSkel
+
+    formats.save_skin(tmp_path / "a.usda", odd_skin())
+    stage = Usd.Stage.Open(str(tmp_path / "a.usda"))
+    (mesh,) = (prim for prim in stage.Traverse() if prim.GetTypeName() == "Mesh")
+    binding = UsdSkel.BindingAPI(mesh)
+    joints = list(
+        UsdSkel.Skeleton(stage.GetPrimAtPath(binding.GetSkeletonRel().GetTargets()[0])).GetJointsAttr().Get()
+    )
+    binding.CreateJointsAttr([*joints[:-1], "elsewhere"])
+    stage.GetRootLayer().Save()
+    with pytest.raises(formats.FormatError, match="expected joints of the skeleton, found 'elsewhere'"):
+        formats.load_skin(tmp_path / "a.usda")

@@ -10,6 +10,7 @@ from bone_cases import chain
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
+from tempose.rigging.decomposition import growth
 from tempose.rigging.decomposition._weight_kernel import convex_weights, mixing_energy, weights_of_block
 from tempose.rigging.decomposition.alternation import alternate, carried_on
 from tempose.rigging.decomposition.growth import exchange, first_state, grow, with_bone, without_bone
@@ -173,3 +174,11 @@ def test_growth_ends_where_nothing_is_left(rng):
 def test_exchange_never_makes_it_worse(rng):
     problem, state = random_problem(rng, n=60, B=4, K=2)
     assert exchange(problem, state, rng, 3).left.sum() <= state.left.sum()
+
+
+def test_bones_that_hold_nothing_are_not_tried_for_ever(rng, monkeypatch):
+    problem, _ = random_problem(rng)
+    # as if every new bone were dropped again
+    monkeypatch.setattr(growth, "with_bone", lambda state, _: state)
+    state, explained = grow(problem, 4, 2, rng, 1e-9)
+    assert explained and state.n_bones == 1

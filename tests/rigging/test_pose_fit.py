@@ -10,7 +10,6 @@ from pose_cases import J, posed, random_motion, random_skin
 from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.kinematics import dual_quaternion_skinning, linear_blend_skinning
 from tempose.rigging.pose_fit import fit_poses
-from tempose.rigging.pose_fit.fit import continuous_signs
 from tempose.rotations import angle_between, from_rotation_vector, multiply, rotate
 
 TIGHT = {"tolerance": 1e-12}
@@ -93,15 +92,6 @@ def test_a_joint_that_turns_on_and_on_keeps_its_sign(rng) -> None:
     q = fit.motion.rotations
     assert ((q[1:] * q[:-1]).sum(axis=-1) > 0.9).all()
     assert_allclose(angles(q, rotations), 0, atol=1e-5)
-
-
-def test_signs_follow_the_frame_before(rng) -> None:
-    q = np.cumsum(0.1 * rng.normal(size=(50, 2, 4)), axis=0) + np.array([1.0, 0, 0, 0])
-    flipped = q * rng.choice([-1.0, 1.0], size=(50, 2, 1))
-    found = continuous_signs(flipped)
-    assert ((found[1:] * found[:-1]).sum(axis=-1) >= 0).all()
-    assert_allclose(np.abs(found), np.abs(q))
-    assert continuous_signs(q[:0]).shape == (0, 2, 4)
 
 
 def test_joints_that_hold_nothing_do_no_harm(rng) -> None:

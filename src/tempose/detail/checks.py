@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from tempose.clips import MeshClip, SkeletonClip
 from tempose.detail.residuals import check_basis
 from tempose.rigging import Rig
+from tempose.rotations import angle_between
+
+_ALIKE = 1e-3
+"""Radians by which bases at rest may differ, as files round them."""
 
 
 def check_options(model: Any, learners: Mapping[str, Any]) -> None:
@@ -55,7 +61,7 @@ def check_clips(clips: Sequence[MeshClip], rig: Rig, motions: Sequence[SkeletonC
     """
     if not clips:
         raise ValueError("clips must hold one clip or more, got none")
-    n, names = len(rig.skin.mesh.vertices), rig.skin.skeleton.names
+    n = len(rig.skin.mesh.vertices)
     for i, clip in enumerate(clips):
         if len(clip.rest) != n:
             raise ValueError(f"clips[{i}] must have the {n} vertices of the rig, got {len(clip.rest)}")
@@ -66,9 +72,45 @@ def check_clips(clips: Sequence[MeshClip], rig: Rig, motions: Sequence[SkeletonC
     if len(motions) != len(clips):
         raise ValueError(f"motions must hold one for each of {len(clips)} clips, got {len(motions)}")
     for i, (clip, motion) in enumerate(zip(clips, motions)):
-        if motion.skeleton.names != names:
-            raise ValueError(f"motions[{i}] must move the joints of the rig, {', '.join(names[:3])}...")
+        check_joints(rig, motion, f"motions[{i}]")
         if motion.n_frames != clip.n_frames:
             raise ValueError(
                 f"motions[{i}] must have the {clip.n_frames} frames of its clip, got {motion.n_frames}"
             )
+
+
+def check_joints(rig: Rig, motion: SkeletonClip, name: str = "motion") -> None:
+    """Check that a motion moves the joints of a rig, from the same bases.
+
+    Parameters
+    ----------
+    rig : Rig
+        Skin and skeleton.
+    motion : SkeletonClip
+        Its bones may have other lengths.
+    name : str, default "motion"
+        Name of the argument, for the message.
+
+    Raises
+    ------
+    ValueError
+        If it moves other joints, or they hang or rest otherwise: its rotations then mean another pose.
+    """
+    ours, theirs = rig.skin.skeleton, motion.skeleton
+    way = "tempose.rigging.motions.match_motion brings other skeletons onto them"
+    if theirs.names != ours.names:
+        odd = [joint for joint in theirs.names if joint not in ours.names]
+        what = f"unknown {odd[0]!r}" if odd else f"{theirs.n_joints} of {ours.n_joints} in their order"
+        some = ", ".join(ours.names[:3])
+        raise ValueError(f"{name} must move the joints of the rig, {some}..., got {what}; {way}")
+    wrong = np.flatnonzero(theirs.parents != ours.parents)
+    if len(wrong):
+        raise ValueError(f"{name} must hang {ours.names[wrong[0]]!r} on the joint that the rig does; {way}")
+    assert ours.rest_rotations is not None and theirs.rest_rotations is not None
+    turned = angle_between(theirs.rest_rotations, ours.rest_rotations)
+    far = int(turned.argmax())
+    if turned[far] > _ALIKE:
+        raise ValueError(
+            f"{name} must rest as the rig does, got {ours.names[far]!r} turned by "
+            f"{np.degrees(turned[far]):.3g} degrees; {way}"
+        )

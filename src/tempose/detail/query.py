@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from tempose.clips import SkeletonClip
 from tempose.clips.resample import resample
+from tempose.detail.checks import check_joints
 from tempose.detail.inputs import motion_inputs
 from tempose.detail.training import Inputs
 from tempose.rigging import Rig
@@ -75,9 +75,11 @@ def make_query(rig: Rig, motion: SkeletonClip, fps: float, near: FloatArray) -> 
     Raises
     ------
     ValueError
-        If it moves other joints or has no frames.
+        If it moves other joints, or they rest otherwise, or it has no frames.
     """
-    _check(rig, motion)
+    check_joints(rig, motion)
+    if motion.n_frames == 0:
+        raise ValueError("motion must have one frame or more, got none")
     T = motion.n_frames
     m = max(1, math.ceil(motion.fps / fps - _SNAP))
     dense = motion if abs(m * fps - motion.fps) < _SNAP * fps else resample(motion, m * fps)
@@ -92,18 +94,3 @@ def make_query(rig: Rig, motion: SkeletonClip, fps: float, near: FloatArray) -> 
     after = np.minimum(before + 1, Q - 1)
     chained = replace(inputs.take(order), chains=order % m)
     return Query(chained, rank[before], rank[after], part)
-
-
-def _check(rig: Rig, motion: SkeletonClip) -> None:
-    names: Any = rig.skin.skeleton.names
-    if motion.skeleton.names != names:
-        odd = [name for name in motion.skeleton.names if name not in names]
-        what = (
-            f"unknown {odd[0]!r}" if odd else f"{len(motion.skeleton.names)} of {len(names)} in their order"
-        )
-        raise ValueError(
-            f"motion must move the joints of the rig, {', '.join(names[:3])}..., got {what}; "
-            "tempose.rigging.motions.match_motion brings other skeletons onto them"
-        )
-    if motion.n_frames == 0:
-        raise ValueError("motion must have one frame or more, got none")

@@ -10,6 +10,7 @@ import numpy as np
 from tempose.clips import Skeleton, SkeletonClip
 from tempose.formats._bvh_text import BvhJoint, BvhText, parse_bvh
 from tempose.formats._motion_clip import Found, rate_from_period, to_clip
+from tempose.formats._names import distinct
 from tempose.formats.conventions import FormatError
 from tempose.rotations import from_euler_degrees, multiply, rotate
 from tempose.typing import FloatArray
@@ -136,22 +137,10 @@ def _skeleton(joints: list[BvhJoint], places: dict[int, FloatArray], notes: list
     # an end site on its own joint says that the length is unknown
     tips = np.array([joint.tip if any(joint.tip or ()) else (np.nan,) * 3 for joint in joints])
     parents = np.array([joint.parent for joint in joints])
-    return Skeleton(_distinct([joint.name for joint in joints], notes), parents, offsets, tips=tips)
-
-
-def _distinct(names: list[str], notes: list[str]) -> tuple[str, ...]:
-    taken: set[str] = set(names)
-    seen: set[str] = set()
-    result: list[str] = []
-    for name in names:
-        new, k = name, 2
-        while new in seen or (new != name and new in taken):
-            new, k = f"{name}_{k}", k + 1
-        if new != name:
-            notes.append(f"A second joint {name!r} is called {new!r}.")
-        seen.add(new)
-        result.append(new)
-    return tuple(result)
+    named = [joint.name for joint in joints]
+    names = distinct(named)
+    notes += [f"A second joint {old!r} is called {new!r}." for old, new in zip(named, names) if old != new]
+    return Skeleton(names, parents, offsets, tips=tips)
 
 
 def _rate(path: Path, text: BvhText, fps: float | None) -> float | None:

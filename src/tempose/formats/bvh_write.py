@@ -10,6 +10,7 @@ import numpy as np
 
 from tempose._files import atomic_path
 from tempose.clips import Skeleton, SkeletonClip
+from tempose.formats._names import distinct
 from tempose.formats.conventions import to_file, y_up_rotation
 from tempose.kinematics import forward_kinematics, rest_transforms
 from tempose.rotations import conjugate, from_matrix, multiply, rotate, to_euler_degrees
@@ -48,7 +49,7 @@ def write_bvh(
     BVH has no rest rotations: the pose of all channels zero is the rest pose, whatever the bases of the
     joints are, and channels turn away from it. The root has the offset zero and six channels, as programs
     differ on whether its positions add to the offset; every other joint has three angles. Angles do not jump
-    by full turns. Spaces and braces in names become underscores.
+    by full turns. Spaces and braces in names become underscores; names that become alike get numbers.
     """
     if not clip.n_frames:
         raise ValueError("a BVH file needs at least one frame, got none")
@@ -136,6 +137,7 @@ def _depth_first(skeleton: Skeleton, rotations: FloatArray) -> tuple[Skeleton, F
 def _hierarchy(skeleton: Skeleton, up: str, unit: float) -> Iterator[str]:
     offsets = _clean(to_file(skeleton.offsets, up, unit))
     offsets[0] = 0.0
+    names = distinct([_UNFIT.sub("_", name) for name in skeleton.names])
     assert skeleton.tips is not None
     tips = _clean(np.nan_to_num(to_file(skeleton.tips, up, unit)))
     turns = " ".join(f"{axis.upper()}rotation" for axis in _ORDER)
@@ -143,7 +145,7 @@ def _hierarchy(skeleton: Skeleton, up: str, unit: float) -> Iterator[str]:
     for j, parent in enumerate(skeleton.parents):
         depth.append(depth[parent] + 1 if j else 0)
         outer, inner = "\t" * depth[j], "\t" * (depth[j] + 1)
-        yield f"{outer}{'JOINT' if j else 'ROOT'} {_UNFIT.sub('_', skeleton.names[j])}"
+        yield f"{outer}{'JOINT' if j else 'ROOT'} {names[j]}"
         yield f"{outer}{{"
         yield f"{inner}OFFSET {_numbers(offsets[j])}"
         yield f"{inner}CHANNELS " + (f"3 {turns}" if j else f"6 Xposition Yposition Zposition {turns}")

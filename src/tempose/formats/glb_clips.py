@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tempose.formats._names import distinct
 from tempose.formats.glb_container import Document
 from tempose.formats.glb_json import Item
 from tempose.formats.glb_keys import Channel, read_channels, sample
@@ -68,34 +69,6 @@ def animation_names(doc: Document) -> tuple[str, ...]:
         One a clip; unnamed ones are ``clip_0`` and so on by their index.
     """
     return distinct([item.text("name") or f"clip_{i}" for i, item in enumerate(doc.top.items("animations"))])
-
-
-def distinct(names: list[str]) -> tuple[str, ...]:
-    """Make names differ by numbers behind the later ones.
-
-    Parameters
-    ----------
-    names : list of str
-        Names, maybe equal.
-
-    Returns
-    -------
-    tuple of str
-        Distinct names.
-
-    Examples
-    --------
-    >>> distinct(["a", "b", "a"])
-    ('a', 'b', 'a_2')
-    """
-    taken, seen, result = set(names), set[str](), list[str]()
-    for name in names:
-        new, k = name, 2
-        while new in seen or (new != name and new in taken):
-            new, k = f"{name}_{k}", k + 1
-        seen.add(new)
-        result.append(new)
-    return tuple(result)
 
 
 def read_motion(doc: Document, nodes: Nodes, clip: str | None, fps: float | None) -> Motion:

@@ -8,8 +8,9 @@ import numpy as np
 
 from tempose.clips import Skeleton
 from tempose.formats._joint_moves import local_offsets, local_rotations, rigid
+from tempose.formats._names import distinct
 from tempose.formats.glb_binding import Binding
-from tempose.formats.glb_clips import Motion, distinct
+from tempose.formats.glb_clips import Motion
 from tempose.formats.glb_container import Document
 from tempose.formats.glb_nodes import Nodes, chain
 from tempose.typing import FloatArray, IntArray

@@ -9,7 +9,7 @@ import numpy as np
 
 from tempose.clips import Skeleton
 from tempose.formats._joint_moves import local_offsets, local_rotations, rigid
-from tempose.formats.glb_clips import distinct
+from tempose.formats._names import distinct
 from tempose.formats.usd_mesh import Part
 from tempose.formats.usd_stage import Stage, modules
 from tempose.typing import FloatArray, IntArray
@@ -268,8 +268,7 @@ def stated_weights(stage: Stage, rigged: Rigged, parts: list[Part]) -> FloatArra
         joints, shares = (np.array(values).reshape(-1, width) for values in found)
         mapper = query.GetJointMapper()
         if mapper and not mapper.IsIdentity():
-            order = [str(j) for j in rigged.query.GetJointOrder()]
-            own = np.array([order.index(str(j)) for j in query.GetJointOrder()])
+            own = _own_joints(stage, rigged, query)
         else:
             own = np.arange(J - first)
         where = f"{part.prim.GetPath()}: "
@@ -284,3 +283,13 @@ def stated_weights(stage: Stage, rigged: Rigged, parts: list[Part]) -> FloatArra
         rows = np.arange(part.start, part.start + part.n)[:, None]
         np.add.at(weights, (rows, own[joints] + first), shares.astype(np.float64))
     return weights
+
+
+def _own_joints(stage: Stage, rigged: Rigged, query: Any) -> IntArray:
+    """Joint of the skeleton for each of those that a mesh lists itself."""
+    place = {str(joint): k for k, joint in enumerate(rigged.query.GetJointOrder())}
+    listed = [str(joint) for joint in query.GetJointOrder()]
+    unknown = [joint for joint in listed if joint not in place]
+    if unknown:
+        raise stage.error(f"expected joints of the skeleton, found {unknown[0]!r} listed by a mesh")
+    return np.array([place[joint] for joint in listed])

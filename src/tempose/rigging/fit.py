@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
-from tempose.clips.blocks import read_block
-from tempose.metrics import compare
+from tempose.clips.blocks import cut_blocks, read_block
+from tempose.metrics.errors import ErrorMeter
 from tempose.rigging.joints import auto_skin
 from tempose.rigging.pose_fit import fit_poses
 from tempose.rigging.refine import refine_joints
@@ -25,6 +25,7 @@ SkeletonLike = str | os.PathLike[str] | Skeleton | SkinnedMesh | Rig
 _STILL = 1e-6
 """Share of D below which the frames of a clip are all the same."""
 _INSIDE = 0.9
+_BLOCK = 1_000_000
 
 
 def fit_rig(
@@ -177,7 +178,7 @@ def _fitted(
     fitted = fit_poses(skin, clip.vertices, fps=clip.fps, blending=blending, progress=progress)
     clock.stage("poses")
     rig = Rig(skin, fitted.motion, blending, report)
-    errors = asdict(compare(clip.vertices, rig.vertices(), skin.mesh.diagonal))
+    errors = _errors(clip, rig)
     clock.stage("errors")
     if _stands_still(clip):
         report["warnings"].append(
@@ -185,6 +186,15 @@ def _fitted(
             "learned from the clip"
         )
     return Rig(skin, fitted.motion, blending, {**report, "errors": errors})
+
+
+def _errors(clip: MeshClip, rig: Rig) -> dict[str, float]:
+    """Compare block by block: the posed frames of a long clip need not all be held at once."""
+    n = len(rig.skin.mesh.vertices)
+    meter = ErrorMeter(clip.n_frames * n, rig.skin.mesh.diagonal)
+    for some in cut_blocks(clip.n_frames, 3 * n, _BLOCK):
+        meter.add(read_block(clip.vertices, some, "vertices"), rig.vertices(rig.motion.frames(some)))
+    return asdict(meter.errors)
 
 
 def _stands_still(clip: MeshClip) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from tempose.typing import FloatArray
 KIND = "rig"
 """As in the header of the file."""
 _OPTIONAL = ("uv", "uv_faces", "colors", "polygons")
+_PARTS = ("offsets", "rest_rotations", "tips")
 
 
 def save_rig(rig: Rig, path: str | os.PathLike[str]) -> Path:
@@ -102,13 +103,10 @@ def rig_to_arrays(rig: Rig) -> tuple[dict[str, FloatArray], dict[str, Any]]:
         "weights/values": weights.data,
         "weights/joints": weights.indices.astype(np.uint16),
         "weights/counts": np.diff(weights.indptr).astype(np.uint16),
-        "motion/rotations": motion.rotations,
-        "motion/root_position": motion.root_position,
+        **motion_to_arrays(motion, skeleton, "motion"),
     }
     arrays |= {f"mesh/{name}": v for name in _OPTIONAL if (v := getattr(mesh, name)) is not None}
     arrays |= {f"group/{k}": faces for k, faces in enumerate(mesh.groups.values())}
-    if not _same(motion.skeleton, skeleton):
-        arrays["motion/offsets"] = motion.skeleton.offsets
     header = {
         "joints": list(skeleton.names),
         "groups": list(mesh.groups),
@@ -161,27 +159,76 @@ def rig_from_arrays(arrays: Mapping[str, Any], header: Mapping[str, Any]) -> Rig
         arrays["skeleton/rest_rotations"],
         arrays["skeleton/tips"],
     )
-    moving = skeleton
-    if "motion/offsets" in arrays:
-        moving = Skeleton(
-            skeleton.names,
-            skeleton.parents,
-            arrays["motion/offsets"],
-            skeleton.rest_rotations,
-            skeleton.tips,
-        )
-    motion = SkeletonClip(
-        moving,
-        arrays["motion/rotations"],
-        arrays["motion/root_position"],
-        header["fps"],
-        header["motion_name"],
-        _source(header["motion_source"]),
-    )
+    facts = {"fps": header["fps"], "name": header["motion_name"], "source": header["motion_source"]}
+    motion = motion_from_arrays(arrays, facts, skeleton, "motion")
     if header["blending"] not in ("linear", "dual-quaternion"):
         raise ValueError(f"blending must be 'linear' or 'dual-quaternion', got {header['blending']!r}")
     weights = _dense(arrays, len(mesh.vertices), skeleton.n_joints)
     return Rig(SkinnedMesh(mesh, skeleton, weights), motion, header["blending"], header["report"])
+
+
+def motion_to_arrays(motion: SkeletonClip, bind: Skeleton, name: str) -> dict[str, FloatArray]:
+    """Take a motion apart; of its skeleton only what is unlike that of the skin.
+
+    Parameters
+    ----------
+    motion : SkeletonClip
+        On the joints of `bind`.
+    bind : Skeleton
+        That of the skin.
+    name : str
+        What the names of the arrays begin with.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Rotations, path of the root and parts of the skeleton.
+    """
+    arrays = {f"{name}/rotations": motion.rotations, f"{name}/root_position": motion.root_position}
+    for part in _PARTS:
+        own: Any = getattr(motion.skeleton, part)
+        if not np.array_equal(own, getattr(bind, part), equal_nan=True):
+            arrays[f"{name}/{part}"] = own
+    return arrays
+
+
+def motion_from_arrays(
+    arrays: Mapping[str, Any], facts: Mapping[str, Any], bind: Skeleton, name: str
+) -> SkeletonClip:
+    """Put a motion together again.
+
+    Parameters
+    ----------
+    arrays : mapping of str to ndarray
+        From `motion_to_arrays`.
+    facts : mapping
+        ``fps``, ``name`` and ``source``, as JSON can hold them.
+    bind : Skeleton
+        That of the skin.
+    name : str
+        What the names of the arrays begin with.
+
+    Returns
+    -------
+    SkeletonClip
+        The same motion.
+
+    Raises
+    ------
+    ValueError
+        If parts do not fit together.
+    LookupError
+        If a part is missing.
+    """
+    own = {part: arrays[f"{name}/{part}"] for part in _PARTS if f"{name}/{part}" in arrays}
+    return SkeletonClip(
+        replace(bind, **own) if own else bind,
+        arrays[f"{name}/rotations"],
+        arrays[f"{name}/root_position"],
+        facts["fps"],
+        facts["name"],
+        _source(facts["source"]),
+    )
 
 
 def _dense(arrays: Mapping[str, Any], n: int, J: int) -> FloatArray:
@@ -193,10 +240,6 @@ def _dense(arrays: Mapping[str, Any], n: int, J: int) -> FloatArray:
     weights = np.zeros((n, J))
     weights[np.repeat(np.arange(n), counts), joints] = values
     return weights
-
-
-def _same(a: Skeleton, b: Skeleton) -> bool:
-    return a is b or bool(np.array_equal(a.offsets, b.offsets))
 
 
 def _source(fields: Mapping[str, Any]) -> Source:

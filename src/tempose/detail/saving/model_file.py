@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tempose.clips import SkeletonClip
 from tempose.detail.basis import DetailBasis
 from tempose.detail.multiresolution import CoarseBasis
 from tempose.detail.regions import region_shares
@@ -17,7 +17,7 @@ from tempose.detail.saving.packing import pack, unpack
 from tempose.detail.saving.tree import from_arrays, to_arrays
 from tempose.models import load_model, save_model
 from tempose.rigging import Rig
-from tempose.rigging.saving import rig_from_arrays, rig_to_arrays
+from tempose.rigging.saving import motion_from_arrays, motion_to_arrays, rig_from_arrays, rig_to_arrays
 
 if TYPE_CHECKING:
     from tempose.detail.model import DetailModel
@@ -53,9 +53,8 @@ def write_detail_model(model: DetailModel, path: str | os.PathLike[str]) -> Path
     arrays, rig = rig_to_arrays(model.rig_)
     motions: list[dict[str, Any]] = []
     for i, motion in enumerate(model.motions_[1:], 1):
-        arrays[f"motions/{i}/rotations"] = motion.rotations
-        arrays[f"motions/{i}/root_position"] = motion.root_position
-        motions.append({"fps": motion.fps, "name": motion.name})
+        arrays |= motion_to_arrays(motion, model.rig_.skin.skeleton, f"motions/{i}")
+        motions.append({"fps": motion.fps, "name": motion.name, "source": asdict(motion.source)})
     kept = model.detail_ if model.coarse_ is None else model.coarse_.basis
     arrays["detail/modes"] = kept.modes.reshape(len(kept.modes), -1)
     arrays["detail/coordinates"] = kept.coordinates
@@ -110,7 +109,7 @@ def read_detail_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
     try:
         arrays = {name: unpack(packed[name], how) for name, how in header["packed"].items()}
         for name, array in arrays.items():
-            if array.dtype.kind == "f" and name != "skeleton/tips" and not np.isfinite(array).all():
+            if array.dtype.kind == "f" and not name.endswith("/tips") and not np.isfinite(array).all():
                 raise ValueError(f"{name} must be finite")
         options = dict(header["options"])
         check_basis(options["basis"])
@@ -118,8 +117,7 @@ def read_detail_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
         shares = region_shares(rig.skin.weights)
         motions = [rig.motion]
         for i, entry in enumerate(header["motions"], 1):
-            turns, roots = arrays[f"motions/{i}/rotations"], arrays[f"motions/{i}/root_position"]
-            motions.append(SkeletonClip(rig.skin.skeleton, turns, roots, entry["fps"], entry["name"]))
+            motions.append(motion_from_arrays(arrays, entry, rig.skin.skeleton, f"motions/{i}"))
         detail, coarse = _detail(arrays, header, rig)
         state = {
             "rig_": rig,

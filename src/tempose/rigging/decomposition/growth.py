@@ -10,6 +10,8 @@ from tempose.rigging.decomposition.seeds import best_seed, rigid_motions
 from tempose.rigging.decomposition.steps import weight_step
 from tempose.typing import FloatArray, IntArray
 
+_IDLE = 20  # bones that may come to hold nothing before the clip counts as explained
+
 
 def first_state(problem: Problem, influences: int) -> State:
     """One bone that carries everything.
@@ -101,14 +103,17 @@ def grow(
     """
     state = first_state(problem, influences)
     size = max(8, len(problem.rest) // (4 * B))
-    while state.n_bones < B:
+    # where no bone helps any more each new one is dropped again: that must end
+    for _ in range(B + _IDLE):
+        if state.n_bones >= B:
+            break
         if np.sqrt(state.left.mean() / problem.n_frames) <= exact:
             return state, True
         state = with_bone(state, best_seed(problem, state, rng, size))
         weight_step(problem, state)
         alternate(problem, state, 2)
         state = _used(state)
-    return state, False
+    return state, state.n_bones < B
 
 
 def _used(state: State) -> State:

@@ -12,7 +12,7 @@ from tempose.rigging.pose_fit.dual_descent import descend_dual
 from tempose.rigging.pose_fit.moments import FrameMoments, SkinMoments, about_joints
 from tempose.rigging.pose_fit.starts import bone_sums
 from tempose.rigging.pose_fit.sweep import sweep_back, sweep_forward
-from tempose.rotations import from_matrix, rotate
+from tempose.rotations import continuous, from_matrix, rotate
 from tempose.typing import BoolArray, FloatArray, IntArray, Progress, silent
 
 _AT_ONCE = 64
@@ -156,7 +156,7 @@ def _fit(
         descend_dual(made, seen, frames, A, bones, *found, progress)
     squares = np.maximum(values, 0.0) + seen.loose
     errors = np.sqrt(squares / len(made.skin.mesh.vertices))
-    rotations = continuous_signs(local_rotations(skeleton, from_matrix(R)))
+    rotations = continuous(local_rotations(skeleton, from_matrix(R)))
     motion = SkeletonClip(posed or skeleton, rotations, root + seen.centres, fps)
     return PoseFit(motion, errors, iterations, converged)
 
@@ -189,21 +189,3 @@ def bone_steps(bind: Skeleton, posed: Skeleton) -> FloatArray:
     steps = rotate(rest_transforms(bind)[0][np.maximum(bind.parents, 0)], posed.offsets)
     steps[0] = 0
     return steps
-
-
-def continuous_signs(q: FloatArray) -> FloatArray:
-    """Choose between q and -q, frame by frame the one nearer to the frame before.
-
-    Parameters
-    ----------
-    q : (T, ..., 4) float
-        Unit quaternions.
-
-    Returns
-    -------
-    (T, ..., 4) ndarray
-        The same rotations.
-    """
-    flips = np.where((q[1:] * q[:-1]).sum(axis=-1, keepdims=True) < 0, -1.0, 1.0)
-    signs = np.cumprod(np.concatenate([np.ones_like(q[:1, ..., :1]), flips]), axis=0)
-    return signs * q
