@@ -27,12 +27,12 @@ from tempose.detail.pictures import (
     skin_clip,
     variance_sheet,
 )
-from tempose.kinematics import forward_kinematics
+from tempose.kinematics import forward_kinematics, rest_motion
 from tempose.render import contact_sheet, save_png
 from tempose.render.drawing import save_drawing
 from tempose.rigging import Rig, fit_rig
 from tempose.rigging.pictures import bone_lines, weight_colors
-from tempose.rigging.pictures.plot import rest_clip, rest_motion
+from tempose.rigging.pictures.plot import rest_clip
 from tempose.rigging.pictures.views import abreast, body_views
 from tempose.rotations import conjugate, from_rotation_vector, multiply
 
@@ -77,7 +77,7 @@ def ramp(count: int, start: int, stop: int, ease: int = 15) -> np.ndarray:
 
 def rig_pictures() -> None:
     _, rig, _ = crane()
-    names, at_rest = ("front", "side", "back"), rest_motion(rig)
+    names, at_rest = ("front", "side", "back"), rest_motion(rig.skin.skeleton)
     look: dict[str, Any] = {"views": body_views(at_rest, names), "cell": 300}
     one = abreast(rest_clip(rig), 1, names, segments=bone_lines(at_rest), **look)
     colors = weight_colors(rig.skin.weights, rig.skin.skeleton)

@@ -17,7 +17,8 @@ from tempose.detail.learners import (
     RidgeLearner,
 )
 from tempose.detail.learners.calibration import variance_factor
-from tempose.detail.learners.features import Features, TwoFrames, frame_ages, past
+from tempose.detail.learners.features import Features, TwoFrames
+from tempose.detail.learners.memory import frame_ages, past
 from tempose.detail.regions import region_grams
 from tempose.detail.training import Inputs, Training
 from tempose.regression import GaussianProcess, Kernel

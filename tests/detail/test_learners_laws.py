@@ -19,8 +19,7 @@ from synthetic_motion import (
 )
 
 from tempose.detail.learners import PlainGaussianProcess, RegionalGaussianProcess
-from tempose.detail.learners.features import frames_remembered
-from tempose.detail.learners.regional import lags_at
+from tempose.detail.learners.memory import frames_remembered, lags_at
 
 TWO_FRAMES = RegionalGaussianProcess(lags=(0,))
 MEMORY = RegionalGaussianProcess()

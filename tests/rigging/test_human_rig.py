@@ -14,8 +14,8 @@ from rig_bodies import human_skin, random_rig, tube
 from tempose.clips import Mesh, MeshClip
 from tempose.clips.mesh_parts import keep_faces
 from tempose.embedding import Embedding, embed_skeleton
-from tempose.kinematics import rest_transforms
-from tempose.rigging import Rig, fit_rig, rest_clip
+from tempose.kinematics import rest_motion, rest_transforms
+from tempose.rigging import Rig, fit_rig
 from tempose.rigging.skeletons import frames
 from tempose.rigging.skeletons import human_skin as bind_human
 from tempose.rigging.skeletons.frames import surest_human
@@ -213,4 +213,4 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any], message: str) ->
 
 def test_something_else_than_a_clip_is_refused() -> None:
     with pytest.raises(ValueError, match="clip must be a MeshClip or a Mesh, got SkeletonClip"):
-        fit_rig(rest_clip(human_skin().skeleton))  # type: ignore[arg-type]
+        fit_rig(rest_motion(human_skin().skeleton))  # type: ignore[arg-type]

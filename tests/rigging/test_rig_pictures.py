@@ -10,10 +10,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
+from tempose.kinematics import rest_motion
 from tempose.render.drawing import Stroke, Words
 from tempose.rigging import Rig
 from tempose.rigging.pictures import bone_lines, draw_frame_errors, plot_rig, weight_colors
-from tempose.rigging.pictures.plot import frame_errors, rest_motion
+from tempose.rigging.pictures.plot import frame_errors
 from tempose.rigging.pictures.views import body_views, facing_azimuth
 from tempose.rigging.pictures.weights import joint_colors
 from tempose.rotations import from_rotation_vector
@@ -103,7 +104,7 @@ def test_errors_of_frames_are_in_percent_of_the_diagonal() -> None:
 
 def test_rest_is_the_bind_pose() -> None:
     rig = tube()
-    assert_allclose(rig.vertices(rest_motion(rig))[0], rig.skin.mesh.vertices, atol=1e-12)
+    assert_allclose(rig.vertices(rest_motion(rig.skin.skeleton))[0], rig.skin.mesh.vertices, atol=1e-12)
 
 
 def test_curves_keep_their_order_and_break_where_values_are_missing() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.detail.basis import DetailBasis
-from tempose.detail.learners.features import frames_remembered
+from tempose.detail.learners.memory import frames_remembered
 from tempose.detail.training import Inputs, Predictor
 from tempose.typing import FloatArray
 

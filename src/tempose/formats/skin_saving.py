@@ -10,6 +10,7 @@ from tempose.clips import SkeletonClip, SkinnedMesh
 from tempose.formats._place import metres_per_unit
 from tempose.formats._table import USD_SUFFIXES, PathLike, Unit, check_arguments
 from tempose.formats.conventions import FormatError
+from tempose.kinematics import rest_motion
 from tempose.typing import Progress, silent
 
 
@@ -57,7 +58,7 @@ def save_skin(
     if blending not in ("linear", "dual-quaternion"):
         raise ValueError(f"blending must be 'linear' or 'dual-quaternion', got {blending!r}")
     if motion is None:
-        motion = at_rest(skin)
+        motion = rest_motion(skin.skeleton, skin.mesh.name)
     if motion.skeleton.names != skin.skeleton.names:
         raise ValueError("motion must move the joints of the skin, got other joint names")
     if suffix == ".glb":
@@ -72,21 +73,3 @@ def save_skin(
         known = ", ".join((".glb", *USD_SUFFIXES))
         found = suffix or "a name without ending"
         raise FormatError(f"{place}: a mesh with its joints goes into {known}, got {found}")
-
-
-def at_rest(skin: SkinnedMesh) -> SkeletonClip:
-    """Build a clip of one frame in the bind pose.
-
-    Parameters
-    ----------
-    skin : SkinnedMesh
-        J joints.
-
-    Returns
-    -------
-    SkeletonClip
-        One frame.
-    """
-    skeleton = skin.skeleton
-    assert skeleton.rest_rotations is not None
-    return SkeletonClip(skeleton, skeleton.rest_rotations[None], skeleton.offsets[:1], name=skin.mesh.name)

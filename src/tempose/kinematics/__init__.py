@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tempose.kinematics.bone_axes import BoneEnd, bone_axis, bone_ends, role_lengths
 from tempose.kinematics.bone_transforms import bone_transforms, local_rotations
-from tempose.kinematics.forward import forward_kinematics, rest_transforms
+from tempose.kinematics.forward import forward_kinematics, rest_motion, rest_transforms
 from tempose.kinematics.roles import ROLES, bones_of_role, find_roles
 from tempose.kinematics.sides import side_contradictions
 from tempose.kinematics.skinning import linear_blend_skinning
@@ -32,6 +32,7 @@ __all__ = [
     "forward_kinematics",
     "linear_blend_skinning",
     "local_rotations",
+    "rest_motion",
     "rest_transforms",
     "role_lengths",
     "side_contradictions",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tempose.clips import Skeleton
+from tempose.clips import Skeleton, SkeletonClip
 from tempose.rotations import multiply, rotate
 from tempose.typing import FloatArray
 
@@ -58,3 +58,22 @@ def rest_transforms(skeleton: Skeleton) -> tuple[FloatArray, FloatArray]:
     """
     assert skeleton.rest_rotations is not None
     return forward_kinematics(skeleton, skeleton.rest_rotations, skeleton.offsets[0])
+
+
+def rest_motion(skeleton: Skeleton, name: str = "") -> SkeletonClip:
+    """Make a motion of one frame in the rest pose.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        J joints.
+    name : str, default ""
+        Of the motion.
+
+    Returns
+    -------
+    SkeletonClip
+        One frame.
+    """
+    assert skeleton.rest_rotations is not None
+    return SkeletonClip(skeleton, skeleton.rest_rotations[None], skeleton.offsets[:1], name=name)

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip, SkinnedMesh
+from tempose.clips import Mesh, MeshClip, Skeleton, SkinnedMesh
 from tempose.clips.blocks import cut_blocks, read_block
+from tempose.kinematics import rest_motion
 from tempose.metrics.errors import ErrorMeter
 from tempose.rigging.joints import auto_skin
 from tempose.rigging.pose_fit import fit_poses
@@ -85,28 +86,11 @@ def fit_rig(
         "warnings": list(bound.warnings),
     }
     if isinstance(clip, Mesh):
-        return Rig(bound.skin, rest_clip(bound.skin.skeleton), blending, report)
+        return Rig(bound.skin, rest_motion(bound.skin.skeleton), blending, report)
     skin = bound.skin
     if refine or (refine is None and report.get("placed", skeleton) in ("human", "posed")):
         skin = _refined(bound, clip, report, clock, progress)
     return _fitted(clip, skin, blending, report, clock, progress)
-
-
-def rest_clip(skeleton: Skeleton) -> SkeletonClip:
-    """Make a clip of one frame in the rest pose.
-
-    Parameters
-    ----------
-    skeleton : Skeleton
-        J joints.
-
-    Returns
-    -------
-    SkeletonClip
-        One frame.
-    """
-    assert skeleton.rest_rotations is not None
-    return SkeletonClip(skeleton, skeleton.rest_rotations[None], skeleton.offsets[:1])
 
 
 def _check(clip: Any, skeleton: Any, bones: int | None, frame: int | None, blending: str) -> None:

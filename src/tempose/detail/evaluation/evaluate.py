@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 from tempose.detail.evaluation.errors import gram_errors, mixed_residuals
-from tempose.detail.learners.features import frame_ages, frames_remembered
+from tempose.detail.learners.memory import frame_ages, frames_remembered
 from tempose.detail.training import Inputs, Learner, Mixture, Predictor, Training
 from tempose.typing import FloatArray, IntArray
 

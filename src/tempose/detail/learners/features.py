@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tempose.detail.learners.memory import frame_ages, past
 from tempose.detail.training import Inputs
 from tempose.typing import FloatArray, IntArray
 
@@ -154,58 +155,3 @@ class TwoFrames:
         Q = len(inputs)
         before = inputs.angles - inputs.velocity
         return np.concatenate([inputs.angles.reshape(Q, -1), before.reshape(Q, -1)], axis=1)
-
-
-def frames_remembered(predictor: object) -> int:
-    """Count the frames that a predictor looks back to.
-
-    Parameters
-    ----------
-    predictor : object
-        A fitted learner.
-
-    Returns
-    -------
-    int
-        Frames of the training; 0 for one that looks at velocities of the frame alone.
-    """
-    return max(getattr(getattr(predictor, "features", None), "lags", (0,)))
-
-
-def past(values: FloatArray, chains: IntArray, lag: int) -> FloatArray:
-    """Look back in time, never into another clip.
-
-    Parameters
-    ----------
-    values : (T, ...) float
-        A value a frame.
-    chains : (T,) int
-        Which clip every frame is from.
-    lag : int
-        Frames back; where the clip is not so old its first frame answers.
-
-    Returns
-    -------
-    (T, ...) ndarray
-        Earlier values.
-    """
-    ages = frame_ages(chains)
-    return values[np.arange(len(chains)) - np.minimum(ages, lag)]
-
-
-def frame_ages(chains: IntArray) -> IntArray:
-    """Count the frames of the same clip before each.
-
-    Parameters
-    ----------
-    chains : (T,) int
-        Which clip every frame is from.
-
-    Returns
-    -------
-    (T,) ndarray
-        Frames before it.
-    """
-    frames = np.arange(len(chains))
-    begins = np.diff(chains, prepend=chains[:1] - 1) != 0
-    return frames - np.maximum.accumulate(np.where(begins, frames, 0))

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.detail.learners.calibration import variance_factor
-from tempose.detail.learners.features import Features, frame_ages
+from tempose.detail.learners.features import Features
 from tempose.detail.learners.kernel_predictor import KernelPredictor, spread_frames, unit_grams
+from tempose.detail.learners.memory import frame_ages, lags_at
 from tempose.detail.training import Inputs, Training
 from tempose.regression import GroupDistances, Kernel, fit_kernel, one_blas_thread
 from tempose.typing import FloatArray, IntArray, Progress, silent
-
-_LAGS_PER_SECOND = 30
 
 
 @dataclass(frozen=True)
@@ -77,24 +76,6 @@ class RegionalGaussianProcess:
                 factors[r] = variance_factor(fit.kernel, seen, S[r], inputs.chains[some])
                 self.progress(int(r) + 1, len(S), "regions")
         return KernelPredictor(features, kernels, X, factors * spreads, self.inducing, vague)
-
-
-def lags_at(lags: tuple[int, ...], fps: float) -> tuple[int, ...]:
-    """Turn times into frames.
-
-    Parameters
-    ----------
-    lags : tuple of int
-        Thirtieths of a second, ascending.
-    fps : float
-        Frames per second.
-
-    Returns
-    -------
-    tuple of int
-        Frames, ascending; fewer where several fall on one.
-    """
-    return tuple(sorted({round(lag * fps / _LAGS_PER_SECOND) for lag in lags}))
 
 
 def _known_past(inputs: Inputs, lag: int) -> IntArray:

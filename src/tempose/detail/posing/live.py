@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tempose._validate import as_floats
-from tempose.detail.learners.features import frames_remembered
 from tempose.detail.learners.kernel_predictor import KernelPredictor
+from tempose.detail.learners.memory import frames_remembered
 from tempose.detail.posing._tree_kernels import (
     dual_row,
     joint_rows,

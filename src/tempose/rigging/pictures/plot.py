@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from tempose.clips import MeshClip, SkeletonClip
-from tempose.kinematics import rest_transforms
+from tempose.clips import MeshClip
+from tempose.kinematics import rest_motion
 from tempose.render import Theme, contact_sheet, save_png
 from tempose.render.colors import Picture
 from tempose.render.drawing import save_drawing
@@ -62,7 +62,8 @@ def plot_rig(
     place = Path(folder)
     place.mkdir(exist_ok=True)
     written = [place / "skeleton.png", place / "weights.png"]
-    names, still, at_rest = ("front", "three-quarter", "side", "back"), rest_clip(rig), rest_motion(rig)
+    names = ("front", "three-quarter", "side", "back")
+    still, at_rest = rest_clip(rig), rest_motion(rig.skin.skeleton)
     look: dict[str, Any] = {"names": names, "views": body_views(at_rest, names), "cell": 420, "theme": theme}
     save_png(abreast(still, 1, segments=bone_lines(at_rest), **look), written[0])
     progress(1, 4, "drawing pictures")
@@ -85,24 +86,6 @@ def plot_rig(
         save_drawing(drawing, path)
     progress(4, 4, "drawing pictures")
     return [*written, place / "frames.png", *charts]
-
-
-def rest_motion(rig: Rig) -> SkeletonClip:
-    """Return one frame of the skeleton at rest.
-
-    Parameters
-    ----------
-    rig : Rig
-        Any.
-
-    Returns
-    -------
-    SkeletonClip
-        The bind pose.
-    """
-    skeleton = rig.skin.skeleton
-    rest: Any = skeleton.rest_rotations
-    return SkeletonClip(skeleton, rest[None], rest_transforms(skeleton)[1][:1], rig.motion.fps)
 
 
 def rest_clip(rig: Rig) -> MeshClip:
