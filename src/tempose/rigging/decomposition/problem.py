@@ -21,9 +21,11 @@ class Problem:
     """(n, 3 T) where each vertex is in all frames."""
     squares: FloatArray
     """(n,) sum of the squares of `targets`."""
+    alone: float = 0.0
+    """How much a bone must carry by itself what follows it, against the blend: 0 is the blend only."""
 
     @classmethod
-    def of(cls, rest: FloatArray, frames: FloatArray) -> Problem:
+    def of(cls, rest: FloatArray, frames: FloatArray, alone: float = 0.0) -> Problem:
         """Arrange a clip.
 
         Parameters
@@ -32,6 +34,8 @@ class Problem:
             Rest positions.
         frames : (T, n, 3) float
             Positions in every frame.
+        alone : float, default 0.0
+            How much a bone must carry by itself what follows it, against the blend.
 
         Returns
         -------
@@ -40,9 +44,8 @@ class Problem:
         """
         n = len(rest)
         targets = np.ascontiguousarray(np.asarray(frames, dtype=np.float64).transpose(1, 0, 2).reshape(n, -1))
-        return cls(
-            rest, np.column_stack([rest, np.ones(n)]), targets, np.einsum("ij,ij->i", targets, targets)
-        )
+        squares = np.einsum("ij,ij->i", targets, targets)
+        return cls(rest, np.column_stack([rest, np.ones(n)]), targets, squares, alone)
 
     def part(self, vertices: IntArray) -> Problem:
         """Return the same clip on some vertices.
@@ -57,9 +60,8 @@ class Problem:
         Problem
             The smaller clip.
         """
-        return Problem(
-            self.rest[vertices], self.lifted[vertices], self.targets[vertices], self.squares[vertices]
-        )
+        rest, lifted = self.rest[vertices], self.lifted[vertices]
+        return Problem(rest, lifted, self.targets[vertices], self.squares[vertices], self.alone)
 
     @property
     def n_frames(self) -> int:

@@ -100,8 +100,20 @@ def bone_step(problem: Problem, state: State, sweeps: int = 3) -> None:
         Weights to keep, bones to start from.
     sweeps : int, default 3
         How often every bone is set with the others held.
+
+    Notes
+    -----
+    Nothing in the blend tells where a bone is that only ever has small weights: it may lie far from the mesh
+    and turn wildly. With ``problem.alone = a``, ``a sum_i w_ij |R_j x_i + t_j - y_i|^2`` is added for every
+    bone j.
     """
     T, B = state.motions.shape[:2]
     moments = (lifted_weights(problem, state).T.tocsr() @ problem.targets).reshape(B, 4, T, 3)
     shared = shared_moments(problem.lifted, state.bones, state.weights, B)
+    if problem.alone > 0:
+        each = np.arange(B)
+        shared[each, each] += problem.alone * shared.sum(
+            axis=1
+        )  # weights sum to one: over k, w_ij w_ik is w_ij
+        moments = (1 + problem.alone) * moments
     sweep_bones(shared, np.ascontiguousarray(moments.transpose(2, 0, 1, 3)), state.motions, 1e-7, sweeps)

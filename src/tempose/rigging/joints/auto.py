@@ -16,6 +16,7 @@ from tempose.rigging.joints.skeleton import skeleton_from_bones
 from tempose.typing import FloatArray, Progress, silent
 
 _MOST_FRAMES = 240
+_ALONE = 3e-3  # without it a bone may lie far from what it moves, and tear every joint by a tenth of a horse
 
 
 def auto_skin(
@@ -70,7 +71,9 @@ def auto_skin(
             f"clip moves as one rigid body, to {100 * tolerance:.2g} % of D: there are no bones to find; "
             "use skeleton 'human' or a skeleton file, or a smaller tolerance"
         )
-    found = decompose(frames, rest, bones=count, influences=influences, seed=seed, progress=progress)
+    found = decompose(
+        frames, rest, bones=count, influences=influences, alone=_ALONE, seed=seed, progress=progress
+    )
     skeleton, weights, motion = skeleton_from_bones(found, fps=clip.fps)
     settled = settle(rest, skeleton, weights, motion, frames, influences, pull=pull, progress=progress)
     report = _report(found, settled.vertices, frames)
