@@ -11,6 +11,7 @@ from tempose.rotations import to_matrix
 from tempose.typing import FloatArray
 
 _WEAK = 0.15  # of the strongest: turns about an axis below it say little about the place along it
+_SLIGHT = 0.01  # square radians, mean squared turn: below it, flesh that slides is taken for a joint far away
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ def pair_joints(bones: Decomposition) -> PairJoints:
 def _filtered(N: FloatArray, off: FloatArray) -> FloatArray:
     """Solve ``N x = off`` with directions faded out that N holds weakly."""
     values, axes = np.linalg.eigh(N)
-    floor = _WEAK * values[..., -1:] + 1e-6  # turns of less than a milliradian are noise
+    floor = _WEAK * values[..., -1:] + _SLIGHT
     part = np.einsum("bji,bj->bi", axes, off) * values / (values**2 + floor**2)
     return np.einsum("bij,bj->bi", axes, part)
 
