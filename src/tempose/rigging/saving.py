@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +12,15 @@ import numpy as np
 import scipy.sparse as sp
 
 from tempose._validate import as_floats, as_indices
-from tempose.clips import Mesh, Skeleton, SkeletonClip, SkinnedMesh
-from tempose.clips.source import Source
+from tempose.clips import Mesh, Skeleton, SkinnedMesh
 from tempose.models import load_model, save_model
+from tempose.rigging.motion_arrays import motion_from_arrays, motion_to_arrays, source_from
 from tempose.rigging.rig import Rig
 from tempose.typing import FloatArray
 
 KIND = "rig"
 """As in the header of the file."""
 _OPTIONAL = ("uv", "uv_faces", "colors", "polygons")
-_PARTS = ("offsets", "rest_rotations", "tips")
 
 
 def save_rig(rig: Rig, path: str | os.PathLike[str]) -> Path:
@@ -149,7 +148,7 @@ def rig_from_arrays(arrays: Mapping[str, Any], header: Mapping[str, Any]) -> Rig
         arrays["mesh/faces"],
         groups=groups,
         name=header["mesh_name"],
-        source=_source(header["mesh_source"]),
+        source=source_from(header["mesh_source"]),
         **{name: arrays[f"mesh/{name}"] for name in _OPTIONAL if f"mesh/{name}" in arrays},
     )
     skeleton = Skeleton(
@@ -167,70 +166,6 @@ def rig_from_arrays(arrays: Mapping[str, Any], header: Mapping[str, Any]) -> Rig
     return Rig(SkinnedMesh(mesh, skeleton, weights), motion, header["blending"], header["report"])
 
 
-def motion_to_arrays(motion: SkeletonClip, bind: Skeleton, name: str) -> dict[str, FloatArray]:
-    """Take a motion apart; of its skeleton only what is unlike that of the skin.
-
-    Parameters
-    ----------
-    motion : SkeletonClip
-        On the joints of `bind`.
-    bind : Skeleton
-        That of the skin.
-    name : str
-        What the names of the arrays begin with.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Rotations, path of the root and parts of the skeleton.
-    """
-    arrays = {f"{name}/rotations": motion.rotations, f"{name}/root_position": motion.root_position}
-    for part in _PARTS:
-        own: Any = getattr(motion.skeleton, part)
-        if not np.array_equal(own, getattr(bind, part), equal_nan=True):
-            arrays[f"{name}/{part}"] = own
-    return arrays
-
-
-def motion_from_arrays(
-    arrays: Mapping[str, Any], facts: Mapping[str, Any], bind: Skeleton, name: str
-) -> SkeletonClip:
-    """Put a motion together again.
-
-    Parameters
-    ----------
-    arrays : mapping of str to ndarray
-        From `motion_to_arrays`.
-    facts : mapping
-        ``fps``, ``name`` and ``source``, as JSON can hold them.
-    bind : Skeleton
-        That of the skin.
-    name : str
-        What the names of the arrays begin with.
-
-    Returns
-    -------
-    SkeletonClip
-        The same motion.
-
-    Raises
-    ------
-    ValueError
-        If parts do not fit together.
-    LookupError
-        If a part is missing.
-    """
-    own = {part: arrays[f"{name}/{part}"] for part in _PARTS if f"{name}/{part}" in arrays}
-    return SkeletonClip(
-        replace(bind, **own) if own else bind,
-        arrays[f"{name}/rotations"],
-        arrays[f"{name}/root_position"],
-        facts["fps"],
-        facts["name"],
-        _source(facts["source"]),
-    )
-
-
 def _dense(arrays: Mapping[str, Any], n: int, J: int) -> FloatArray:
     values = as_floats(arrays["weights/values"], "weights/values", ("k",))
     joints = as_indices(arrays["weights/joints"], "weights/joints", (len(values),), limit=J)
@@ -240,11 +175,3 @@ def _dense(arrays: Mapping[str, Any], n: int, J: int) -> FloatArray:
     weights = np.zeros((n, J))
     weights[np.repeat(np.arange(n), counts), joints] = values
     return weights
-
-
-def _source(fields: Mapping[str, Any]) -> Source:
-    given: dict[str, Any] = dict(fields)
-    # JSON has lists where the fields are tuples
-    for name in ("guessed", "notes"):
-        given[name] = tuple(given[name])
-    return Source(**given)

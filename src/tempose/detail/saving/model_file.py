@@ -17,7 +17,8 @@ from tempose.detail.saving.packing import pack, unpack
 from tempose.detail.saving.tree import from_arrays, to_arrays
 from tempose.models import load_model, save_model
 from tempose.rigging import Rig
-from tempose.rigging.saving import motion_from_arrays, motion_to_arrays, rig_from_arrays, rig_to_arrays
+from tempose.rigging.motion_arrays import motion_from_arrays, motion_to_arrays
+from tempose.rigging.saving import rig_from_arrays, rig_to_arrays
 
 if TYPE_CHECKING:
     from tempose.detail.model import DetailModel
