@@ -7,12 +7,12 @@ import time
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
 from tempose.clips import Mesh, MeshClip, Skeleton, SkinnedMesh
 from tempose.clips.blocks import cut_blocks, read_block
+from tempose.clips.still import stands_still
 from tempose.kinematics import rest_motion
 from tempose.metrics.errors import ErrorMeter
+from tempose.rigging.doubts import doubts_of_skin
 from tempose.rigging.joints import auto_skin
 from tempose.rigging.pose_fit import fit_poses
 from tempose.rigging.refine import refine_joints
@@ -23,8 +23,6 @@ from tempose.rigging.skeletons.inside import share_inside
 from tempose.typing import Progress, silent
 
 SkeletonLike = str | os.PathLike[str] | Skeleton | SkinnedMesh | Rig
-_STILL = 1e-6
-"""Share of D below which the frames of a clip are all the same."""
 _INSIDE = 0.9
 _BLOCK = 1_000_000
 
@@ -164,7 +162,8 @@ def _fitted(
     rig = Rig(skin, fitted.motion, blending, report)
     errors = _errors(clip, rig)
     clock.stage("errors")
-    if _stands_still(clip):
+    report["warnings"] += doubts_of_skin(errors["rms_percent"])
+    if clip.n_frames > 1 and stands_still(clip):
         report["warnings"].append(
             f"all {clip.n_frames} frames are the same; the skeleton does not move, and nothing can be "
             "learned from the clip"
@@ -179,15 +178,6 @@ def _errors(clip: MeshClip, rig: Rig) -> dict[str, float]:
     for some in cut_blocks(clip.n_frames, 3 * n, _BLOCK):
         meter.add(read_block(clip.vertices, some, "vertices"), rig.vertices(rig.motion.frames(some)))
     return asdict(meter.errors)
-
-
-def _stands_still(clip: MeshClip) -> bool:
-    first = np.asarray(clip.vertices[0], dtype=np.float64)
-    least = _STILL * max(clip.mesh.diagonal, 1e-300)
-    for t in range(1, clip.n_frames):
-        if np.abs(read_block(clip.vertices, slice(t, t + 1), "vertices")[0] - first).max() > least:
-            return False
-    return clip.n_frames > 1
 
 
 class _Clock:

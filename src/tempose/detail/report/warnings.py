@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tempose.clips import MeshClip
+from tempose.clips.still import stands_still
 from tempose.detail.fitting import Gathered
 from tempose.detail.report.heldout import FEWEST, HeldOut
 from tempose.detail.residuals import Basis
@@ -14,8 +15,6 @@ from tempose.rotations import angle_between
 
 _TURNS = 30.0
 """Degrees of the root beyond which residuals in world axes do not last."""
-_STILL = 1e-6
-"""Part of the diagonal that frames may differ by and still be one."""
 
 
 def warnings_of(clips: Sequence[MeshClip], gathered: Gathered, chosen: HeldOut, basis: Basis) -> list[str]:
@@ -44,7 +43,7 @@ def warnings_of(clips: Sequence[MeshClip], gathered: Gathered, chosen: HeldOut, 
             f"only {T} frames: too few to leave any out and test what was learned; "
             f"the {chosen.learner.name} is used"
         )
-    still = _still(clips, gathered.rig.skin.mesh.diagonal)
+    still = _still(clips)
     if still:
         found.append(f"{still}: no motion, nothing to learn from but a constant residual")
     turn = _root_turn(gathered)
@@ -60,13 +59,9 @@ def warnings_of(clips: Sequence[MeshClip], gathered: Gathered, chosen: HeldOut, 
     return found
 
 
-def _still(clips: Sequence[MeshClip], D: float) -> str:
+def _still(clips: Sequence[MeshClip]) -> str:
     """Name what does not move."""
-    constant = [
-        i
-        for i, clip in enumerate(clips)
-        if all(np.abs(f - clip.vertices[0]).max() <= _STILL * D for f in clip.vertices)
-    ]
+    constant = [i for i, clip in enumerate(clips) if stands_still(clip)]
     if len(constant) == len(clips):
         return "all frames are the same"
     return f"clip {constant[0]} is the same in all frames" if constant else ""
