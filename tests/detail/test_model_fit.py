@@ -16,6 +16,7 @@ from tempose.clips.resample import resample
 from tempose.detail import DetailModel, motion_inputs, residuals
 from tempose.detail.evaluation import mixed_residuals
 from tempose.detail.learners import PlainGaussianProcess
+from tempose.detail.learners.memory import frames_remembered
 from tempose.rotations import from_rotation_vector
 
 
@@ -271,6 +272,16 @@ def test_live_frames_remember_as_batches_do(factor: int, remembering, rig) -> No
     # the first knows nothing of how it moves, and is looked back at for twelve frames of the training
     late = 14 * factor
     assert_allclose(frames[late:], batch[late:], atol=2e-6)
+
+
+def test_a_model_learned_at_60_hz_remembers_as_many_seconds(rig, tmp_path) -> None:
+    motion, other = (resample(swing(rig, 40, seed=s), 60.0) for s in (0, 3))
+    model = DetailModel("regional-gp", folds=0).fit(clothed(rig, motion), rig, [motion])
+    model = DetailModel.load(model.save(tmp_path / "dense.tempose"))
+    assert frames_remembered(model.predictor_) == 24
+    batch, live = model.pose(other).vertices, model.live()
+    frames = [np.array(live.pose(q, p)) for q, p in zip(other.rotations, other.root_position)]
+    assert_allclose(frames[26:], batch[26:], atol=2e-6)
 
 
 def test_clips_of_other_rates_are_brought_to_that_of_the_first(rig) -> None:

@@ -215,3 +215,9 @@ def test_bone_lengths_and_origin_of_every_motion_are_kept(case, tmp_path) -> Non
         assert_array_equal(one.skeleton.offsets, two.skeleton.offsets)
         assert (one.name, one.source, one.fps) == (two.name, two.source, two.fps)
     assert_array_equal(model.pose(model.motions_[1]).vertices, back.pose(back.motions_[1]).vertices)
+
+
+def test_a_file_that_lost_a_motion_is_refused(saved, tmp_path) -> None:
+    path = rewritten(saved[1], tmp_path / "lost.tempose", lambda header: header["motions"].clear())
+    with pytest.raises(ValueError, match="coordinates of 50 frames, not of the motions"):
+        DetailModel.load(path)

@@ -120,6 +120,8 @@ def read_detail_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dic
         for i, entry in enumerate(header["motions"], 1):
             motions.append(motion_from_arrays(arrays, entry, rig.skin.skeleton, f"motions/{i}"))
         detail, coarse = _detail(arrays, header, rig)
+        if sum(motion.n_frames for motion in motions) != len(detail.coordinates):
+            raise ValueError(f"detail/coordinates of {len(detail.coordinates)} frames, not of the motions")
         state = {
             "rig_": rig,
             "motions_": tuple(motions),
