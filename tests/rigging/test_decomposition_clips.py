@@ -104,6 +104,7 @@ def test_more_bones_than_motions_is_refused_with_the_number(bent):
     [
         (dict(bones=0), "bones must be from 1 to"),
         (dict(bones=10**6), "bones must be from 1 to"),
+        (dict(alone=-1.0), "alone must not be negative"),
         (dict(influences=0), "influences must be at least 1"),
         (dict(rest=np.zeros((5, 3))), r"frames must have shape \(T, 5, 3\)"),
         (dict(frames=np.zeros((0, 370, 3))), "at least one frame"),

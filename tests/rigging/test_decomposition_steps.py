@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -182,3 +183,31 @@ def test_bones_that_hold_nothing_are_not_tried_for_ever(rng, monkeypatch):
     monkeypatch.setattr(growth, "with_bone", lambda state, _: state)
     state, explained = grow(problem, 4, 2, rng, 1e-9)
     assert explained and state.n_bones == 1
+
+
+def test_bones_that_carry_alone_have_the_least_of_both_errors(rng):
+    problem, state = random_problem(rng)
+    problem = replace(problem, alone=0.3)
+    P, Y = problem.rest, problem.targets.reshape(len(problem.rest), -1, 3)
+
+    def energy(motions):
+        each = np.einsum("tbij,nj->ntbi", motions[..., :3], P) + motions[None, ..., 3]
+        W = np.zeros((len(P), state.n_bones))
+        np.add.at(W, (np.arange(len(P))[:, None], state.bones), state.weights)
+        blend = ((np.einsum("nb,ntbi->nti", W, each) - Y) ** 2).sum()
+        return blend + problem.alone * np.einsum("nb,ntbi->", W, (each - Y[:, :, None]) ** 2)
+
+    start = energy(state.motions)
+    bone_step(problem, state, sweeps=200)
+    least = energy(state.motions)
+    assert least < start
+    for _ in range(20):
+        turn = to_matrix(from_rotation_vector(1e-3 * rng.standard_normal((*state.motions.shape[:2], 3))))
+        near = np.einsum("tbij,tbjk->tbik", turn, state.motions)
+        near[..., 3] += 1e-3 * rng.standard_normal(near.shape[:-1])
+        assert energy(near) > least
+
+
+def test_a_part_of_a_clip_keeps_what_bones_carry_alone(rng):
+    problem, _ = random_problem(rng)
+    assert replace(problem, alone=0.3).part(np.arange(5)).alone == 0.3
