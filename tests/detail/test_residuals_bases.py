@@ -139,3 +139,12 @@ def test_signs_of_quaternions_mean_nothing(blending, rng) -> None:
     assert_allclose(vertex_bases(rig, other), vertex_bases(rig, motion), atol=1e-12)
     V = rng.normal(size=(6, len(rig.skin.weights), 3))
     assert_allclose(residuals(rig, other, V), residuals(rig, motion, V), atol=1e-12)
+
+
+def test_frames_with_holes_are_named() -> None:
+    rig = tube_rig()
+    motion = swing(rig, 3)
+    V = rig.vertices(motion).astype(np.float32)
+    V[2, 7, 1] = np.nan
+    with pytest.raises(ValueError, match="V must be finite, found NaN or infinity in frame 2, vertex 7"):
+        residuals(rig, motion, V)

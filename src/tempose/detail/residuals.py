@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tempose.clips import SkeletonClip
+from tempose.clips.blocks import read_block
 from tempose.detail.posing.skin import Basis, BlockSkin
 from tempose.rigging import Rig
 from tempose.rotations import to_matrix
@@ -99,7 +100,7 @@ def residuals(
     Raises
     ------
     ValueError
-        If the frames do not fit the rig or the motion.
+        If the frames do not fit the rig or the motion, or a value is not finite.
     """
     n, T = len(rig.skin.mesh.vertices), motion.n_frames
     if V.shape != (T, n, 3):
@@ -110,6 +111,7 @@ def residuals(
     D = np.zeros((T, n, 3), dtype)
     for t, (row, turn) in enumerate(zip(*skin.rows(motion))):
         skin.pose(row, turn)
-        skin.residual(np.asarray(V[t]), motion.root_position[t], D[t])
+        true = read_block(V, slice(t, t + 1), "V")[0]
+        skin.residual(true, motion.root_position[t], D[t])
         progress(t + 1, T, "residuals")
     return D
