@@ -15,7 +15,7 @@ from tube_rig import NAMES, tube_clip, tube_mesh, tube_motion, tube_skin
 
 import tempose
 from tempose.cli.detail_words import parse_strength, read_mask
-from tempose.clips import MeshClip, Skeleton, SkeletonClip
+from tempose.clips import Mesh, MeshClip, Skeleton, SkeletonClip
 from tempose.detail import DetailModel
 from tempose.rigging import fit_rig
 from tempose.rotations import from_rotation_vector, multiply
@@ -259,6 +259,20 @@ def test_clips_of_another_mesh(run: Run, job: Path, clip: MeshClip) -> None:
     tempose.save("other.npz", clip)
     line = refused(run, "detail", "fit", "other.npz", *FIT[3:])
     assert "other.npz" in line and "vertices" in line
+
+
+def test_a_clip_of_other_vertices_in_the_same_number(run: Run, job: Path) -> None:
+    clip = tube_clip()
+    order = np.random.default_rng(0).permutation(len(clip.rest))
+    V = np.asarray(clip.vertices)[:, order]
+    mesh = Mesh(V[0], np.argsort(order)[clip.mesh.faces])
+    tempose.save("mixed.npz", MeshClip(V, mesh, 25.0))
+    ran = run("detail", "fit", "mixed.npz", *FIT[3:], "--learner", "mean", "--report", "r.json")
+    warnings = " ".join(json.loads(Path("r.json").read_text())["warnings"])
+    assert ran.code == 0 and "other faces" in ran.err and "other faces" in warnings
+    assert "skin alone is off by" in ran.err and "skin alone is off by" in warnings
+    good = run(*FIT, "--learner", "mean")
+    assert good.code == 0 and "other faces" not in good.err and "another mesh" not in good.err
 
 
 def test_detail_needs_motion(run: Run, job: Path) -> None:

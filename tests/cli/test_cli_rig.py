@@ -205,3 +205,14 @@ def test_a_model_of_another_kind(run: Run, job: Path) -> None:
     tempose.SignalModel().fit(tempose.load("clip.npz")).save("signals.tempose")
     line = refused(run, "rig", "export", "signals.tempose", "-o", "out/r.bvh")
     assert "signals" in line and "rig" in line
+
+
+def test_a_skin_on_the_wrong_vertices_is_told_of(run: Run, job: Path) -> None:
+    clip = tube_clip()
+    order = np.random.default_rng(0).permutation(len(clip.rest))
+    V = np.asarray(clip.vertices)[:, order]
+    tempose.save("mixed.npz", MeshClip(V, replace(clip.mesh, vertices=V[0]), 25.0))
+    ran = run("rig", "fit", "mixed.npz", "--skeleton", "skin.glb", "-o", "out/r.tempose")
+    assert ran.code == 0 and "skin alone is off by" in ran.err and "another mesh" in ran.err
+    good = run(*FIT, "skin.glb")
+    assert good.code == 0 and "another mesh" not in good.err

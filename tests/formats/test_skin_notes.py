@@ -46,3 +46,10 @@ def test_a_skin_of_a_file_says_what_was_done(tmp_path: Path) -> None:
     assert_allclose(off.weights[1], [0.5, 0.5])
     (note,) = [note for note in off.mesh.source.notes if "weights" in note]
     assert "1 of 3 vertices" in note and "summed to 0.5, at vertex 1" in note
+
+
+def test_vertices_without_weights_are_counted(tmp_path: Path) -> None:
+    bare = load_skin(bound(tmp_path / "bare.glb", [[0.25, 0.75, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]))
+    assert_allclose(bare.weights[1:], [[1, 0], [1, 0]])
+    (note,) = [note for note in bare.mesh.source.notes if "weights" in note]
+    assert "2 of 3 vertices" in note and "first joint" in note

@@ -31,3 +31,25 @@ def weight_notes(sums: FloatArray) -> tuple[str, ...]:
         f"The skin weights of {int((off > _ROUNDED).sum())} of {len(sums)} vertices did not sum to one and "
         f"were normalised; the furthest off summed to {sums[v]:.4g}, at vertex {v}.",
     )
+
+
+def held_notes(sums: FloatArray) -> tuple[str, ...]:
+    """Describe vertices of a skin without weights, which its first joint holds.
+
+    Parameters
+    ----------
+    sums : (n,) float
+        What the weights of each vertex sum to in the file.
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none where every vertex has weights.
+    """
+    bare = int((sums == 0).sum())
+    if bare == 0:
+        return ()
+    return (
+        f"{bare} of {len(sums)} vertices have no skin weights, which should sum to one; the first joint of "
+        "their skin holds them.",
+    )

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.formats import glb_accessors as accessors
-from tempose.formats._skin_notes import weight_notes
+from tempose.formats._skin_notes import held_notes, weight_notes
 from tempose.formats.glb_container import Document
 from tempose.formats.glb_influences import influences, vertex_attribute
 from tempose.formats.glb_json import Item
@@ -111,7 +111,8 @@ def read_geometry(doc: Document, nodes: Nodes) -> Geometry:
         raise doc.top.error("expected a mesh with triangles in the scene, found none")
     n = parts[-1].start + len(parts[-1].base)
     notes = (f"{skipped} primitives without triangles are left out.",) if skipped else ()
-    notes += weight_notes(np.concatenate([part.sums for part in parts]))
+    sums = np.concatenate([part.sums for part in parts])
+    notes += weight_notes(sums) + held_notes(sums)
     return Geometry(tuple(parts), tuple(primitives), n, notes)
 
 

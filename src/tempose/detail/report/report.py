@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tempose.clips import MeshClip
+from tempose.clips import Mesh, MeshClip
 from tempose.clips.blocks import read_block
 from tempose.detail.fitting import Gathered
 from tempose.detail.posing import DetailPoser
@@ -15,6 +15,7 @@ from tempose.detail.report.heldout import HeldOut
 from tempose.detail.report.warnings import warnings_of
 from tempose.detail.residuals import Basis
 from tempose.metrics.errors import ErrorMeter
+from tempose.rigging.doubts import doubts_of_faces, doubts_of_skin
 from tempose.typing import FloatArray, Progress
 
 
@@ -76,8 +77,16 @@ def fit_report(
         "kept": measured["kept"][0],
         "frame_errors": {name: measured[name][1] for name in ("skin", "mean", "ours")},
         "heldout": chosen.rows,
-        "warnings": warnings_of(clips, gathered, chosen, basis),
+        "warnings": [
+            *_strangers(clips, rig.skin.mesh),
+            *doubts_of_skin(measured["skin"][0]["rms_percent"]),
+            *warnings_of(clips, gathered, chosen, basis),
+        ],
     }
+
+
+def _strangers(clips: Sequence[MeshClip], mesh: Mesh) -> list[str]:
+    return [s for i, clip in enumerate(clips) for s in doubts_of_faces(mesh, clip.mesh, f"clip {i}")]
 
 
 def _measure(
