@@ -65,7 +65,7 @@ def truth_row(truth: Truth, bones: int, influences: int) -> str:
     rest, D = truth.skin.mesh.vertices, truth.skin.mesh.diagonal
     cpu = time.process_time()
     found = decompose(truth.frames, rest, bones=bones, influences=influences, iterations=60)
-    skeleton, weights, motion = skeleton_from_bones(found)
+    skeleton, weights, motion = skeleton_from_bones(found, truth.skin.mesh.faces)
     joined = [
         settle(rest, skeleton, weights, motion, truth.frames, influences, pull=pull) for pull in (1e-3, 0.02)
     ]

@@ -10,9 +10,11 @@ from tempose.clips import MeshClip, SkinnedMesh
 from tempose.clips.blocks import read_block
 from tempose.metrics import compare
 from tempose.rigging.decomposition import Decomposition, count_bones, decompose
+from tempose.rigging.joints.regions import part_limbs
 from tempose.rigging.joints.seams import distinct_vertices
 from tempose.rigging.joints.settling import settle
-from tempose.rigging.joints.skeleton import skeleton_from_bones
+from tempose.rigging.joints.skeleton import hang_bones
+from tempose.rigging.joints.surface import surface_links
 from tempose.typing import FloatArray, Progress, silent
 
 _MOST_FRAMES = 240
@@ -36,7 +38,8 @@ def auto_skin(
     clip : MeshClip
         At least two frames in which the mesh moves in itself.
     bones : int, optional
-        Number of bones; by default as few as bring free bones to `tolerance`.
+        Number of bones; by default as few as bring free bones to `tolerance`, and one more for each limb
+        that moves like another and is far from it along the surface.
     influences : int, default 4
         Most bones that a vertex may follow.
     tolerance : float, default 1.5e-3
@@ -74,8 +77,22 @@ def auto_skin(
     found = decompose(
         frames, rest, bones=count, influences=influences, alone=_ALONE, seed=seed, progress=progress
     )
-    skeleton, weights, motion = skeleton_from_bones(found, fps=clip.fps)
-    settled = settle(rest, skeleton, weights, motion, frames, influences, pull=pull, progress=progress)
+    faces = back[clip.faces].astype(np.int64)
+    allowed = np.ones(found.weights.shape, dtype=bool)
+    if bones is None:
+        found, allowed = part_limbs(found, surface_links(rest, faces))
+    skeleton, motion, order = hang_bones(found, faces, clip.fps)
+    settled = settle(
+        rest,
+        skeleton,
+        found.weights[:, order],
+        motion,
+        frames,
+        influences,
+        pull=pull,
+        allowed=None if allowed.all() else allowed[:, order],
+        progress=progress,
+    )
     report = _report(found, settled.vertices, frames)
     report["frames"] = len(used)
     skin = SkinnedMesh(clip.mesh, settled.skin.skeleton, settled.skin.weights[back])

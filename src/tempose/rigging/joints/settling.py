@@ -11,7 +11,7 @@ from tempose.kinematics import bone_transforms
 from tempose.kinematics.skinning import bake
 from tempose.rigging.decomposition import weights_for
 from tempose.rigging.refine import refine_joints
-from tempose.typing import FloatArray, Progress, silent
+from tempose.typing import BoolArray, FloatArray, Progress, silent
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +41,7 @@ def settle(
     *,
     pull: float = 0.02,
     rounds: int = 10,
+    allowed: BoolArray | None = None,
     progress: Progress = silent,
 ) -> Settled:
     """Move joints, fit poses and solve weights in turn.
@@ -66,6 +67,9 @@ def settle(
     rounds : int, default 10
         How often weights are solved again; a round that lowers the error by less than 1 % is the
         last.
+    allowed : (n, B) bool, optional
+        Which bones each vertex may follow; by default all. Bones that move alike need it: the frames do
+        not tell them apart.
     progress : Progress
         Told about every round.
 
@@ -79,7 +83,15 @@ def settle(
     history = [_rms(best, frames)]
     for k in range(rounds):
         turns, shifts = bone_transforms(best[0].skeleton, best[1].rotations, best[1].root_position)
-        again = weights_for(frames, rest, turns, shifts, weights=best[0].weights, influences=influences)
+        again = weights_for(
+            frames,
+            rest,
+            turns,
+            shifts,
+            weights=best[0].weights,
+            influences=influences,
+            allowed=allowed,
+        )
         trial = _joined(SkinnedMesh(mesh, best[0].skeleton, again), best[1], frames, pull)
         progress(k + 1, rounds, "joints and weights")
         rms = _rms(trial, frames)

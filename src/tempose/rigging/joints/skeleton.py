@@ -7,13 +7,15 @@ import numpy as np
 from tempose.clips import Skeleton, SkeletonClip
 from tempose.rigging.decomposition import Decomposition
 from tempose.rigging.joints.pairs import pair_joints
+from tempose.rigging.joints.regions import surface_gaps
+from tempose.rigging.joints.surface import surface_links
 from tempose.rigging.joints.tree import bone_tree
 from tempose.rotations import conjugate, multiply, rotate
 from tempose.typing import FloatArray, IntArray
 
 
 def skeleton_from_bones(
-    bones: Decomposition, *, fps: float = 30.0
+    bones: Decomposition, faces: IntArray | None = None, *, fps: float = 30.0
 ) -> tuple[Skeleton, FloatArray, SkeletonClip]:
     """Join the bones of a decomposition.
 
@@ -21,6 +23,9 @@ def skeleton_from_bones(
     ----------
     bones : Decomposition
         B free bones and their weights.
+    faces : (m, 3) int, optional
+        The surface; with it bones that are far apart along the surface are not joined, however alike they
+        move. It may be in pieces.
     fps : float, default 30.0
         Frames per second of the motion.
 
@@ -37,17 +42,39 @@ def skeleton_from_bones(
 
     Notes
     -----
-    The tree spans the pairs whose joint tears least over the frames, among bones that share vertices, in the
-    spirit of [1]_ without its pruning.
+    The tree spans the pairs whose joint tears least over the frames, among bones that share vertices and are
+    near along the surface, in the spirit of [1]_ without its pruning.
 
     References
     ----------
     .. [1] Le and Deng, "Robust and Accurate Skeletal Rigging from Mesh Sequences", SIGGRAPH 2014.
     """
+    skeleton, motion, order = hang_bones(bones, faces, fps)
+    return skeleton, bones.weights[:, order], motion
+
+
+def hang_bones(
+    bones: Decomposition, faces: IntArray | None, fps: float
+) -> tuple[Skeleton, SkeletonClip, IntArray]:
+    """Join bones, and tell which became which joint.
+
+    Parameters
+    ----------
+    bones, faces, fps
+        As for `skeleton_from_bones`.
+
+    Returns
+    -------
+    skeleton, motion
+        As from `skeleton_from_bones`.
+    order : (B,) ndarray of int
+        Bone of each joint.
+    """
     pairs = pair_joints(bones)
     diagonal = float(np.linalg.norm(np.ptp(bones.rest, axis=0)))
     masses = bones.weights.sum(axis=0)
-    order, parents = bone_tree(pairs, masses, diagonal)
+    gaps = None if faces is None else surface_gaps(bones.weights, surface_links(bones.rest, faces))
+    order, parents = bone_tree(pairs, masses, diagonal, gaps)
     weights = bones.weights[:, order]
     centres = (weights.T @ bones.rest) / masses[order][:, None]
     joints = np.array([pairs.places[order[p], b] if p >= 0 else centres[0] for b, p in zip(order, parents)])
@@ -60,7 +87,7 @@ def skeleton_from_bones(
     local = multiply(conjugate(turns[:, np.maximum(parents, 0)]), turns)
     local[:, 0] = turns[:, 0]
     root = rotate(turns[:, 0], joints[0]) + bones.translations[:, order[0]]
-    return skeleton, weights, SkeletonClip(skeleton, local, root, fps)
+    return skeleton, SkeletonClip(skeleton, local, root, fps), order
 
 
 def _tips(rest: FloatArray, weights: FloatArray, joints: FloatArray, parents: IntArray) -> FloatArray:
