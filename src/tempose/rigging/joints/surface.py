@@ -33,7 +33,8 @@ def surface_links(V: FloatArray, F: IntArray) -> Any:
     Notes
     -----
     The tree of bridges leaves two shoes connected through their legs, where every bridge that is short would
-    join them to each other. It is Boruvka's: in each round every piece but the largest takes its shortest bridge.
+    join them to each other. It is Boruvka's: in each round every piece but the largest takes its shortest
+    bridge.
     """
     pairs = np.unique(np.sort(edge_list(F), axis=1), axis=0) if len(F) else np.zeros((0, 2), dtype=np.int64)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
@@ -62,7 +63,7 @@ def _shortest_bridges(V: FloatArray, groups: IntArray) -> IntArray:
     for bit in range(int(labels.max()).bit_length()):
         sides = [np.flatnonzero((labels >> bit & 1) == side) for side in (0, 1)]
         for here, there in (sides, sides[::-1]):
-            d, k = KDTree(V[there]).query(V[here])
+            d, k = _nearest(V[there], V[here])
             closer = d < away[here]
             away[here[closer]], near[here[closer]] = d[closer], there[k[closer]]
     order = np.lexsort((away, labels))
@@ -75,6 +76,11 @@ def _beside(V: FloatArray, pieces: IntArray, i: int, j: int) -> IntArray:
     """Return the bridge from i to j and those of nearly its length between the same two pieces."""
     here, there = np.flatnonzero(pieces == pieces[i]), np.flatnonzero(pieces == pieces[j])
     reach = _BRIDGE * float(np.linalg.norm(V[i] - V[j]))
-    d, k = KDTree(V[there]).query(V[here], distance_upper_bound=reach * (1 + 1e-9) + 1e-300)
-    close = np.isfinite(d)
+    d, k = _nearest(V[there], V[here])
+    close = d <= reach
     return np.concatenate([[[i, j]], np.column_stack([here[close], there[k[close]]])])
+
+
+def _nearest(points: FloatArray, queries: FloatArray) -> tuple[FloatArray, IntArray]:
+    d, k = KDTree(points).query(queries)
+    return np.asarray(d), np.asarray(k)
