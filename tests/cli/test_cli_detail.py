@@ -275,6 +275,18 @@ def test_a_clip_of_other_vertices_in_the_same_number(run: Run, job: Path) -> Non
     assert good.code == 0 and "other faces" not in good.err and "another mesh" not in good.err
 
 
+def test_a_skin_that_is_the_clip_leaves_nothing_to_learn(run: Run, job: Path) -> None:
+    Path("clip.npz").unlink()
+    tempose.save("clip.npz", tempose.Rig.load("rig.tempose").clip())
+    ran = run(*FIT, "--learner", "gp")
+    assert ran.code == 0 and "next to nothing is left to learn" in ran.err
+
+
+def test_what_is_not_human_is_told_where_skeletons_are_given(run: Run, job: Path) -> None:
+    line = refused(run, "detail", "fit", "clip.npz", "-o", "out/m.tempose")
+    assert "--skeleton" in line and "tempose rig fit" in line and "--rig" in line
+
+
 def test_detail_needs_motion(run: Run, job: Path) -> None:
     tempose.save("still.obj", tube_mesh())
     assert "still" in refused(run, "detail", "fit", "still.obj", *FIT[3:])

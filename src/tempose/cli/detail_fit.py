@@ -58,7 +58,7 @@ def fit(  # numpydoc ignore=PR01
     _check_alike(clips, clip_files, rigged)
     loaded = time.perf_counter()
     if rigged is None:
-        rigged = fitted(clips[0], clip_files[0], "human")
+        rigged = _human_rig(clips[0], clip_files[0])
         _warn(rigged.report.get("warnings", ()))
     with progress_bar() as progress:
         try:
@@ -172,3 +172,11 @@ def detail_rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("parts left out, predicted, off by", f"{words} %"))
     rows.append(("seconds", f"{report['seconds']['total']:.1f}"))
     return rows
+
+
+def _human_rig(clip: MeshClip, path: str) -> Rig:
+    try:
+        return fitted(clip, path, "human")
+    except ValueError as error:
+        way = "; `tempose rig fit` takes --skeleton, and --rig takes what it makes"
+        raise ValueError(f"{error}{way if '--skeleton' in str(error) else ''}") from None
