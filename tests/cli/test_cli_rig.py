@@ -216,3 +216,16 @@ def test_a_skin_on_the_wrong_vertices_is_told_of(run: Run, job: Path) -> None:
     assert ran.code == 0 and "skin alone is off by" in ran.err and "another mesh" in ran.err
     good = run(*FIT, "skin.glb")
     assert good.code == 0 and "another mesh" not in good.err
+
+
+def test_bones_of_a_clip_that_only_slides(run: Run, job: Path) -> None:
+    V = tube_mesh().vertices + np.arange(8)[:, None, None] * np.array([0.1, 0, 0])
+    tempose.save("slide.npz", MeshClip(V.astype(np.float32), tube_mesh(), 25.0))
+    line = refused(run, "rig", "fit", "slide.npz", "-o", "out/r.tempose", "--skeleton", "auto", "--bones", 6)
+    assert "one rigid body" in line and "bones=1" not in line
+
+
+def test_bones_of_two_frames_are_doubted(run: Run, job: Path) -> None:
+    tempose.save("two.npz", tube_clip(2))
+    ran = run("rig", "fit", "two.npz", "-o", "out/r.tempose", "--skeleton", "auto", "--bones", 2)
+    assert ran.code == 0 and "only 2 frames" in ran.err

@@ -243,4 +243,6 @@ def _refuse_empty(state: State, B: int) -> None:
 
 
 def _too_many(B: int, enough: int) -> str:
+    if enough < 2:
+        return f"bones={B} is more than the clip has: it moves as one rigid body, there are no bones to find"
     return f"bones={B} is more than the clip has: {enough} rigid bones explain it; ask for bones={enough}"

@@ -18,6 +18,7 @@ from tempose.rigging.joints.surface import surface_links
 from tempose.typing import FloatArray, Progress, silent
 
 _MOST_FRAMES = 240
+_FEW_FRAMES = 4
 _ALONE = 3e-3  # without it a bone may lie far from what it moves, and tear every joint by a tenth of a horse
 
 
@@ -95,6 +96,10 @@ def auto_skin(
     )
     report = _report(found, settled.vertices, frames)
     report["frames"] = len(used)
+    if len(used) < _FEW_FRAMES:
+        report["warnings"].append(
+            f"only {len(used)} frames: parts that turn alike in them share a bone, and joints are doubtful"
+        )
     skin = SkinnedMesh(clip.mesh, settled.skin.skeleton, settled.skin.weights[back])
     return skin, report
 
