@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tempose.clips import Mesh, Skeleton, SkeletonClip, SkinnedMesh
-from tempose.kinematics import bone_transforms, rest_transforms
+from tempose.kinematics import bone_transforms
 from tempose.kinematics.skinning import bake
 from tempose.rigging.decomposition import weights_for
 from tempose.rigging.refine import refine_joints
@@ -79,9 +79,7 @@ def settle(
         Skin, motion and errors.
     """
     mesh = Mesh(rest, np.zeros((0, 3), dtype=np.int32))
-    # every round pulls to the first places: pulled to its own last ones, a hinge creeps along its axis
-    places = rest_transforms(skeleton)[1]
-    best = _joined(SkinnedMesh(mesh, skeleton, weights), motion, frames, pull, places)
+    best = _joined(SkinnedMesh(mesh, skeleton, weights), motion, frames, pull)
     history = [_rms(best, frames)]
     for k in range(rounds):
         turns, shifts = bone_transforms(best[0].skeleton, best[1].rotations, best[1].root_position)
@@ -94,7 +92,7 @@ def settle(
             influences=influences,
             allowed=allowed,
         )
-        trial = _joined(SkinnedMesh(mesh, best[0].skeleton, again), best[1], frames, pull, places)
+        trial = _joined(SkinnedMesh(mesh, best[0].skeleton, again), best[1], frames, pull)
         progress(k + 1, rounds, "joints and weights")
         rms = _rms(trial, frames)
         if rms >= history[-1]:
@@ -107,9 +105,9 @@ def settle(
 
 
 def _joined(
-    skin: SkinnedMesh, motion: SkeletonClip, frames: FloatArray, pull: float, places: FloatArray
+    skin: SkinnedMesh, motion: SkeletonClip, frames: FloatArray, pull: float
 ) -> tuple[SkinnedMesh, SkeletonClip]:
-    refined = refine_joints(skin, motion, frames, pull=pull, toward=places)
+    refined = refine_joints(skin, motion, frames, pull=pull)
     return refined.skin, refined.fit.motion
 
 

@@ -38,7 +38,6 @@ def refine_joints(
     *,
     rounds: int = 3,
     pull: float = _PULL,
-    toward: FloatArray | None = None,
     progress: Progress = silent,
 ) -> JointRefinement:
     """Move the joints of a skin so that it follows a clip better.
@@ -56,8 +55,6 @@ def refine_joints(
     pull : float, default 1e-3
         Holds a joint where it was given, as a mean squared turn (radians) about it would; what the clip does
         not tell, such as a place along the axis of a hinge, stays.
-    toward : (J, 3) float, optional
-        Where the pull goes, metres; by default where the joints are.
     progress : Progress
         Told about every round.
 
@@ -86,7 +83,7 @@ def refine_joints(
     rms = [_rms(fit)]
     first = rest_transforms(skin.skeleton)[1]
     for k in range(rounds):
-        joints = solve_joints(made, seen, fit.motion, pull, first if toward is None else toward)
+        joints = solve_joints(made, seen, fit.motion, pull, first)
         other = with_joints(made.skin, joints)
         again = made.bound_to(other)
         better = fit_moments(again, seen, fps=fps)
