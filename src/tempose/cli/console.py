@@ -119,6 +119,27 @@ def show_json(value: Any) -> None:
     typer.echo(json.dumps(plain(value), indent=2, allow_nan=False))
 
 
+def tell(report: dict[str, Any], rows: Sequence[Sequence[str]], json: bool) -> None:
+    """Say what a command found and wrote.
+
+    Parameters
+    ----------
+    report : dict
+        With ``warnings`` and, under ``inputs``, ``out``.
+    rows : sequence of (str, str)
+        What a person wants to read of it.
+    json : bool
+        Whether the whole report is printed as JSON instead.
+    """
+    for warning in report["warnings"]:
+        note(f"note: {warning}")
+    if json:
+        show_json(report)
+        return
+    show_table(rows)
+    note(f"wrote {report['inputs']['out']}")
+
+
 @contextmanager
 def writing(path: Path) -> Generator[None, None, None]:
     """Name the output in whatever the system says while it is written.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from tempose.cli import rig_options as given
 from tempose.cli import signals_options as reading_options
-from tempose.cli.console import note, progress_bar, show_json, show_table, writing
+from tempose.cli.console import note, progress_bar, tell, writing
 from tempose.cli.options import Clip, Group, Json, Start, Step, Stop, Topology
 from tempose.cli.report import make_report, write_report
 from tempose.cli.rig_files import check_kept_out, check_skeleton, load_body, load_skeleton
@@ -65,7 +65,7 @@ def fit(  # numpydoc ignore=PR01
         write_report(report, full)
     if plot is not None:
         _plot(rig, body, plot)
-    _tell(full, rig, json)
+    tell(full, rig_rows(full, rig), json)
 
 
 def check_fit(skeleton: str, bones: int | None, frame: int | None, blending: str) -> None:
@@ -168,16 +168,6 @@ def _plot(rig: Rig, body: Mesh | MeshClip, folder: Any) -> None:
         clip = body if isinstance(body, MeshClip) else None
         written = plot_rig(rig, folder, clip, progress=progress)
     note(f"wrote {len(written)} pictures into {folder}")
-
-
-def _tell(report: dict[str, Any], rig: Rig, json: bool) -> None:
-    for warning in report["warnings"]:
-        note(f"note: {warning}")
-    if json:
-        show_json(report)
-        return
-    show_table(rig_rows(report, rig))
-    note(f"wrote {report['inputs']['out']}")
 
 
 def rig_rows(report: dict[str, Any], rig: Rig) -> list[tuple[str, str]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import tempose
 from tempose.cli import signals_options as given
-from tempose.cli.console import note, progress_bar, show_json, show_table, writing
+from tempose.cli.console import note, progress_bar, tell, writing
 from tempose.cli.options import Clip, Group, Json, Start, Step, Stop, Topology
 from tempose.cli.report import make_report, write_report
 from tempose.cli.signals_files import check_folder, check_model_out, write_plots
@@ -81,7 +81,7 @@ def fit(  # numpydoc ignore=PR01
         write_report(report, full)
     if plot is not None:
         write_plots(model, plot)
-    _tell(full, model, json)
+    tell(full, fit_rows(full, model), json)
 
 
 def _load(
@@ -134,16 +134,6 @@ def _measures(clip: MeshClip, model: SignalModel, held_out: int, progress: Any) 
     if held_out >= 2:
         found["heldout"] = left_out_errors(clip, model, held_out, progress)
     return found
-
-
-def _tell(report: dict[str, Any], model: SignalModel, json: bool) -> None:
-    for warning in report["warnings"]:
-        note(f"note: {warning}")
-    if json:
-        show_json(report)
-        return
-    show_table(fit_rows(report, model))
-    note(f"wrote {report['inputs']['out']}")
 
 
 def fit_rows(report: dict[str, Any], model: SignalModel) -> list[tuple[str, str]]:

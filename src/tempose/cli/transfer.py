@@ -7,7 +7,7 @@ from typing import Any
 
 import tempose
 from tempose.cli import transfer_options as given
-from tempose.cli.console import note, progress_bar, show_json, show_table, writing
+from tempose.cli.console import progress_bar, tell, writing
 from tempose.cli.options import Group, Json, check_out
 from tempose.cli.report import make_report, write_report
 from tempose.cli.transfer_contacts import load_contacts, parse_ground
@@ -84,7 +84,7 @@ def transfer(  # numpydoc ignore=PR01
     full = make_report("transfer", inputs, options, result.report | {"seconds": stages}, began)
     if report is not None:
         write_report(report, full)
-    _tell(full, json)
+    tell(full, [*summary_rows(full), ("seconds", f"{full['seconds']['total']:.1f}")], json)
 
 
 def _trimmed(motion: Any, start: int, stop: int | None, step: int) -> Any:
@@ -95,16 +95,6 @@ def _trimmed(motion: Any, start: int, stop: int | None, step: int) -> Any:
 
 def _n_vertices(target: Any) -> int:
     return len(getattr(target, "mesh", target).vertices)
-
-
-def _tell(report: dict[str, Any], json: bool) -> None:
-    for warning in report["warnings"]:
-        note(f"note: {warning}")
-    if json:
-        show_json(report)
-        return
-    show_table([*summary_rows(report), ("seconds", f"{report['seconds']['total']:.1f}")])
-    note(f"wrote {report['inputs']['out']}")
 
 
 def summary_rows(report: dict[str, Any]) -> list[tuple[str, str]]:
